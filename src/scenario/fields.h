@@ -148,6 +148,11 @@ void Fields(V& v, CobotSpec& s) {
   v("safety", s.safety, Part("the cobot's own safety functions"));
   v("payload", s.payload,
     Part("load whose weight the cobot compensates while it holds the object; null: none"));
+  v("touches", s.touches,
+    List(Word("what the links collide with, apart from fixtures and movable objects: the carried "
+              "object, the other links",
+              {"object", "cobot"}),
+         0, 2));
 }
 
 template <class V>

@@ -3,6 +3,7 @@
 // (SI).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -111,6 +112,11 @@ struct CobotSpec {
   std::optional<ControllerSpec> standby_controller;  // second controller, for the event `takeover`
   CobotSafetySpec safety;
   std::optional<PayloadSpec> payload;  // that the cobot compensates while it holds the object
+  std::vector<std::string> touches;    // that its links collide with: object, cobot
+
+  bool Touches(const char* what) const {
+    return std::find(touches.begin(), touches.end(), what) != touches.end();
+  }
 };
 
 // ---- what goes wrong --------------------------------------------------------------------------

@@ -10,12 +10,14 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/archive.h"
 #include "core/messages.h"
 #include "models/object_model.h"
 #include "models/robot.h"
 #include "scenario/scenario.h"
+#include "simulation/contact_pair.h"
 
 namespace predictor {
 
@@ -39,8 +41,8 @@ struct DofFriction {
 };
 inline constexpr double kBrakeImpedance = 0.9999;  // of a closed brake
 
-// A point at which a body touches another body. If the object or the cobot takes part in the
-// contact, it is the body. Otherwise, the body is a movable object.
+// A point at which a body touches another body. If the object takes part in the contact, it is the
+// body. Otherwise, a link of the cobot is the body if one takes part, or else a movable object.
 struct Contact {
   Vector3 p_W = Vector3::Zero();       // [m]
   Vector3 normal_W = Vector3::Zero();  // unit vector, out of the other one
@@ -48,9 +50,10 @@ struct Contact {
   double depth = 0;                    // of the penetration; negative: a gap [m]
   int fixture = -1;                    // the other's index in environment.fixtures; −1: none
   bool yields = false;                 // the fixture has a stiffness [N/m]
-  int movable = -1;  // the other's index in environment.objects; −1: none. If both indices are
-                     // −1, the other one is the floor or the table
-  int body = -1;     // the body's index in environment.objects; −1: the object or the cobot
+  int movable = -1;                    // the other's index in environment.objects; −1: none
+  std::string_view other_link;  // the other one if it is a link of the cobot, or empty. If both
+                                // indices are −1 and this is empty, it is the floor or the table
+  int body = -1;          // the body's index in environment.objects; −1: the object or the cobot
   std::string_view link;  // of the cobot; empty: the object or a movable object
 };
 
@@ -176,6 +179,9 @@ class Engine {
   // accelerations that were computed last.
   virtual int contact_count() const noexcept = 0;
   virtual Contact contact(int i) const noexcept = 0;
+  // Returns the pairs that cobot.touches concerns, with their distances at the present positions.
+  // Empty without cobot.touches. Not for the tick.
+  virtual std::vector<ContactPair> contact_pairs() const { return {}; }
   // Returns whether ComputeAccelerations includes contacts. If so, an object may rest on a body at
   // the start.
   virtual bool has_contacts_at_rest() const noexcept { return true; }
@@ -205,12 +211,13 @@ class Engine {
   virtual void ArchiveMasses(StateArchive& a) noexcept = 0;
 
   // Options for searches outside the tick. They determine whether the joints have Coulomb friction,
-  // the relative accuracy with which contacts are solved, and whether the movable objects touch
-  // anything.
+  // the relative accuracy with which contacts are solved, whether the movable objects touch
+  // anything, and whether the contacts of cobot.touches act.
   struct Options {
     bool coulomb_friction = true;
     double tolerance = 0;
     bool movables_touch = true;
+    bool cobot_touches = true;
   };
   virtual Options options() const noexcept = 0;
   virtual void SetOptions(const Options& options) noexcept = 0;

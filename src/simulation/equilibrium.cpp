@@ -41,9 +41,12 @@ class EquilibriumSearch {
  public:
   explicit EquilibriumSearch(ControlledScene* scene)
       : scene_(*scene), engine_(scene->engine()), options_(engine_.options()) {
-    // The movable objects stay in the places where they start, and do not support the object.
-    engine_.SetOptions(
-        {.coulomb_friction = false, .tolerance = kContactTolerance, .movables_touch = false});
+    // The movable objects stay in the places where they start, and do not support the object. The
+    // cobot supports neither the object nor itself with its links.
+    engine_.SetOptions({.coulomb_friction = false,
+                        .tolerance = kContactTolerance,
+                        .movables_touch = false,
+                        .cobot_touches = false});
   }
   ~EquilibriumSearch() { engine_.SetOptions(options_); }
 
@@ -220,13 +223,26 @@ void RefuseOverlap(const Contact& contact, const EnvironmentSpec& environment) {
                                          ". Move it away by at least this distance.");
 }
 
-// The search does not include the movable objects. If a movable object touched the object or the
-// cobot, the run would not begin at rest.
+// Throws InputError for a contact of a link with the object or with another link.
+[[noreturn]] void RefuseTouchOfLink(const Contact& contact) {
+  const bool is_object = contact.link.empty();
+  std::string text = "cobot.touches: at the start, after the cobot sagged under its load, ";
+  text += is_object ? "the object" : "the cobot's link " + Quote(contact.link);
+  text += " is " + Millimetres(contact.depth) + " inside the cobot's link ";
+  text += Quote(contact.other_link) + ". Choose another cobot.posture";
+  text += is_object ? ", place the object further away with object.attachment.on_end_effector" : "";
+  text += std::string(", or remove ") + (is_object ? "object" : "cobot") + " from this list.";
+  throw InputError::At("cobot.touches", text);
+}
+
+// The search includes neither the movable objects nor the contacts of cobot.touches. If one of them
+// touched the object or the cobot, the run would not begin at rest.
 void RefuseTouch(Engine* engine) {
-  if (engine->movables().count == 0) return;
+  if (engine->movables().count == 0 && engine->contact_pairs().empty()) return;
   engine->Prepare();
   for (int i = 0; i < engine->contact_count(); ++i) {
     const Contact contact = engine->contact(i);
+    if (!contact.other_link.empty()) RefuseTouchOfLink(contact);
     if (contact.movable < 0 || contact.body >= 0) continue;
     const std::string key = KeyOfMovable(contact.movable);
     const std::string other =
@@ -261,7 +277,7 @@ void CheckStart(Engine* engine, const EnvironmentSpec& environment) {
     const Contact contact = engine->contact(i);
     if (contact.depth <= kDeepestStart) continue;
     if (contact.body >= 0) RefuseOverlap(contact, environment);
-    if (contact.movable >= 0) continue;  // RefuseTouch
+    if (contact.movable >= 0 || !contact.other_link.empty()) continue;  // RefuseTouch
     if (contact.fixture >= 0) RefuseFixture(contact);
     const bool table = IsInTable(contact, environment);
     const std::string key = table ? "environment.table" : "environment.floor";

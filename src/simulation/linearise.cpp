@@ -28,8 +28,10 @@ class Linearisation {
         filtered_(scene->wrist().filtered()),
         memory_(scene->memory().begin(), scene->memory().end()),
         options_(engine->options()) {
-    engine_.SetOptions(
-        {.coulomb_friction = false, .tolerance = options_.tolerance, .movables_touch = false});
+    engine_.SetOptions({.coulomb_friction = false,
+                        .tolerance = options_.tolerance,
+                        .movables_touch = false,
+                        .cobot_touches = false});
   }
   ~Linearisation() {
     engine_.SetOptions(options_);

@@ -42,4 +42,20 @@ void RequireShapes(const Scenario& scenario, Toucher toucher, std::size_t shapes
                        "fixture", toucher, scenario);
 }
 
+void RequireShapesOfCobotTouches(const Scenario& scenario, bool cobot, bool object) {
+  const auto refuse = [&](const std::string& what, const std::string& model,
+                          const std::string& remedy) {
+    throw InputError::At("cobot.touches",
+                         "cobot.touches " + what + ", but " +
+                             ResolveModelPath(model, scenario.folder()).string() +
+                             " has no <collision>, so nothing would collide. Add <collision> to "
+                             "the links in this file, or remove " +
+                             remedy);
+  };
+  if (scenario.cobot.Touches("object") && !object)
+    refuse("contains object", scenario.object.model, "object from this list.");
+  if (!scenario.cobot.touches.empty() && !cobot)
+    refuse("is given", scenario.cobot.model, "this key.");
+}
+
 }  // namespace predictor

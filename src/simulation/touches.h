@@ -14,4 +14,8 @@ enum class Toucher { kObject, kCobot };  // the words of `touches`
 // the number of its collision shapes.
 void RequireShapes(const Scenario& scenario, Toucher toucher, std::size_t shapes);
 
+// Throws InputError if cobot.touches lets bodies collide that have no collision shapes. `cobot` and
+// `object` state whether the cobot and the carried object have some.
+void RequireShapesOfCobotTouches(const Scenario& scenario, bool cobot, bool object);
+
 }  // namespace predictor

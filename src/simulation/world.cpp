@@ -338,6 +338,9 @@ std::vector<std::string> World::joint_names() const {
   for (int j = 0; j < robot.dof(); ++j) names.push_back(robot.joint_name(j));
   return names;
 }
+std::vector<ContactPair> World::contact_pairs() const {
+  return impl_->controlled.start_engine().contact_pairs();
+}
 double World::object_mass() const { return impl_->engine().object_model().mass; }
 const JointVector& World::effort_limit() const { return impl_->controlled.effort_limit(); }
 std::string World::EngineFailure() const { return impl_->engine().Failure(); }

@@ -9,6 +9,7 @@
 #include "core/archive.h"
 #include "core/messages.h"
 #include "scenario/scenario.h"
+#include "simulation/contact_pair.h"
 #include "simulation/sampled_loop.h"
 
 namespace predictor {
@@ -62,8 +63,9 @@ class World {
   void Archive(StateArchive& a) noexcept;
 
   // Returns a linear model about the present posture at rest. The model includes the controller,
-  // joint friction and contacts. The model excludes the coupling, the hands, Coulomb friction and
-  // the movable objects. At the start, no movable object touches the object or the cobot. Therefore
+  // joint friction and contacts. The model excludes the coupling, the hands, Coulomb friction, the
+  // movable objects and the contacts of cobot.touches. At the start, neither a movable object nor
+  // such a contact touches the object or the cobot. Therefore
   // the motion of the movable objects neither affects the handles nor follows from a force on the
   // handles. The state x contains the tangent-space change of the coordinates (nv) and then their
   // rates (nv). Allocates memory.
@@ -75,6 +77,10 @@ class World {
   // Returns the forces that carry the object at the start. This function must be called before the
   // first Step or directly after Reset. Allocates memory.
   ObjectSupport SupportAtStart() const;
+
+  // Returns the pairs that cobot.touches concerns, with their distances. Call this before the first
+  // Step or directly after Reset. Empty without cobot.touches. Allocates memory.
+  std::vector<ContactPair> contact_pairs() const;
 
   double object_mass() const;                    // [kg]
   std::vector<std::string> joint_names() const;  // of the cobot's joints

@@ -229,6 +229,12 @@ TEST_F(DartContact, RefusesByNameWhatARigidContactCannotDo) {
             "environment.fixtures.0.touches | environment.fixtures.0.touches contains cobot, but "
             "simulation.engine is dart, in which only the object touches fixtures. Remove cobot "
             "from touches, or set simulation.engine: mujoco.");
+  Scenario own = s;
+  own.cobot.touches = {"object"};
+  EXPECT_EQ(RefusalOf(own),
+            "cobot.touches | cobot.touches is given, but simulation.engine is dart, in which the "
+            "cobot's links collide with nothing. Remove cobot.touches, or set simulation.engine: "
+            "mujoco.");
   EXPECT_EQ(refusal([](FixtureSpec* f) { f->xyz.x() -= kWallGap + 0.0005; }),
             "simulation.engine | simulation.engine is dart, but the object touches the floor, the "
             "table or a fixture at the start. Lift the object by a change of cobot.posture, or set "

@@ -139,7 +139,7 @@ TEST(MeshHoles, OneThatAHullWouldFillIsAnErrorWithPlaceAndRemedy) {
   } catch (const InputError& error) {
     EXPECT_EQ(error.what(),
               "object.model: part.urdf:4: The mesh " + shape.mesh.string() +
-                  " has a hole through it, but its convex hull collides with the fixtures and "
+                  " has a hole through it, but its convex hull collides instead of the mesh and "
                   "would fill it. Build the part around the hole from several <collision> boxes "
                   "and cylinders.");
   }

@@ -82,7 +82,7 @@ class Judge {
     Torques();
     Controller();
     for (std::string& line : StartWarnings(report_->start)) Warn(std::move(line));
-    for (std::string& line : HullWarnings(s_)) Warn(std::move(line));
+    for (std::string& line : HullWarnings(s_, report_->start.pairs)) Warn(std::move(line));
     LooseObject();
     MovableObjects();
     Script();

@@ -89,12 +89,39 @@ Json ToJson(const StabilityReport& r) {
 
 Json ToJson(const LinkGap& gap) { return {{"link", gap.link}, {"clearance_m", gap.distance}}; }
 
+const char* WordOf(PairState state) {
+  switch (state) {
+    case PairState::kCanTouch:
+      return "can_touch";
+    case PairState::kOverlaps:
+      return "overlap";
+    case PairState::kJoint:
+      return "joint";
+    case PairState::kOneBody:
+      return "one_body";
+    case PairState::kHolds:
+      return "holds";
+  }
+  return "";
+}
+
+Json ToJson(const ContactPair& pair) {
+  const bool has_gap = pair.state == PairState::kCanTouch || pair.state == PairState::kOverlaps;
+  return {{"link", pair.link},
+          {"other", pair.other},
+          {"state", WordOf(pair.state)},
+          {"gap_m", has_gap ? Json(pair.distance) : Json(nullptr)}};
+}
+
 Json ToJson(const StartReport& start) {
+  Json pairs = Json::array();
+  for (const ContactPair& pair : start.pairs) pairs.push_back(ToJson(pair));
   return {{"flange_m", ToJson(start.flange)},
           {"last_link_direction", ToJson(start.outward)},
           {"object_is_outside", start.is_outside},
           {"nearest_link", ToJson(start.gaps.links)},
           {"nearest_link_of_hand", ToJson(start.gaps.hand)},
+          {"contact_pairs", pairs},
           {"floor_force_n", start.support.floor},
           {"other_support_n", start.support.other}};
 }
@@ -155,6 +182,15 @@ const schema::Words kWords = {
      {"nearest_link_of_hand", "the link of the cobot's hand that is nearest to the object"},
      {"link", "name of the link; empty: none is within 2 m"},
      {"clearance_m", "distance, at most 2 m; negative: depth of the overlap [m]"},
+     {"contact_pairs", "the bodies that cobot.touches concerns; empty: it is empty"},
+     {"other", "name of another link; empty: the carried object"},
+     {"state",
+      "can_touch, or why no contact acts: overlap (at cobot.posture), joint (a joint connects "
+      "them), one_body (rigidly connected) or holds (the link belongs to the hand that holds the "
+      "object)"},
+     {"gap_m",
+      "distance of the two at the start, at most 2 m; negative: depth of the overlap [m]; null: "
+      "they always touch"},
      {"floor_force_n", "vertical force of the floor on the object [N]"},
      {"other_support_n", "vertical force of table and fixtures on the object [N]"},
      {"arms", "the haptic arms; null: absent"},
@@ -217,7 +253,7 @@ const schema::Words kWords = {
      {"rendered", "force over displacement that the arms render"},
      {"real_n_m", "real part: a stiffness [N/m]"},
      {"imaginary_n_m", "imaginary part: 2π·frequency times a damping [N/m]"}},
-    {"left", "right", "reach", "stop", "stability", "out_of_reach_s", "growth_rate"}};
+    {"left", "right", "reach", "stop", "stability", "out_of_reach_s", "growth_rate", "gap_m"}};
 
 // Returns an example of a report that contains every member.
 CheckReport Example() {
@@ -236,6 +272,7 @@ CheckReport Example() {
   report.stability.emplace();
   report.stability->masses = report.stability->stiffnesses = {1.0};
   report.stability->table.emplace_back();
+  report.start.pairs.emplace_back();
   ContactReport contact;
   contact.fixtures = {0};
   contact.spectrum.emplace_back();

@@ -27,22 +27,31 @@ void AddWarnings(const std::vector<ModelShape>& shapes, const std::string& key,
   }
 }
 
-// Adds warnings about the links of the cobot that its joints move.
-void AddCobotWarnings(const Scenario& s, std::vector<std::string>* warnings) {
+// Adds warnings about the links of the cobot that can touch something. `surroundings` states
+// whether these are all links that its joints move. Otherwise, they are those in `pairs`.
+void AddCobotWarnings(const Scenario& s, bool surroundings, const std::vector<ContactPair>& pairs,
+                      std::vector<std::string>* warnings) {
   const UrdfModel urdf =
       ReadUrdf(ResolveModelPath(s.cobot.model, s.folder()), s.cobot.remove_links, s.folder());
+  const auto has_pair = [&](const std::string& link) {
+    return std::ranges::any_of(pairs, [&](const ContactPair& pair) {
+      return pair.state == PairState::kCanTouch && (pair.link == link || pair.other == link);
+    });
+  };
   std::vector<bool> moves(urdf.links.size(), false);
   for (const UrdfJoint& joint : urdf.joints) {  // parents come before children
     const auto child = static_cast<std::size_t>(joint.child);
     moves[child] =
         joint.type != UrdfJointType::kFixed || moves[static_cast<std::size_t>(joint.parent)];
-    if (moves[child]) AddWarnings(urdf.links[child].collisions, "cobot.model", warnings);
   }
+  for (std::size_t i = 0; i < urdf.links.size(); ++i)
+    if ((surroundings && moves[i]) || has_pair(urdf.links[i].name))
+      AddWarnings(urdf.links[i].collisions, "cobot.model", warnings);
 }
 
 }  // namespace
 
-std::vector<std::string> HullWarnings(const Scenario& s) {
+std::vector<std::string> HullWarnings(const Scenario& s, const std::vector<ContactPair>& pairs) {
   const EnvironmentSpec& environment = s.environment;
   const auto touches = [&](const char* what) {
     const auto touched = [what](const auto& body) { return body.Touches(what); };
@@ -50,9 +59,9 @@ std::vector<std::string> HullWarnings(const Scenario& s) {
            std::ranges::any_of(environment.objects, touched);
   };
   std::vector<std::string> warnings;
-  if (touches("object"))
+  if (touches("object") || s.cobot.Touches("object"))
     AddWarnings(LoadObject(s.object, s.folder()).collisions, "object.model", &warnings);
-  if (touches("cobot")) AddCobotWarnings(s, &warnings);
+  if (touches("cobot") || !pairs.empty()) AddCobotWarnings(s, touches("cobot"), pairs, &warnings);
   for (std::size_t i = 0; i < environment.objects.size(); ++i) {
     const std::string key = "environment.objects." + std::to_string(i);
     const MovableSpec& movable = environment.objects[i];

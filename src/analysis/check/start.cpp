@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/format.h"
 #include "core/text.h"
@@ -17,6 +18,55 @@ constexpr double kCarried = 0.01;  // share of the weight below which a support 
 bool Overlaps(const LinkGap& gap) { return gap.distance < -kTouching; }
 
 std::string Millimetres(double length) { return Formatted("%.0f mm", kMillimetres * length); }
+
+std::string NameOfOther(const ContactPair& pair) {
+  return pair.other.empty() ? "the object" : pair.other;
+}
+
+// Appends the pairs that can touch: one line for the object, and one for each link that can touch
+// other links.
+void AddPossibleContacts(const std::vector<ContactPair>& pairs, std::string* text) {
+  std::vector<std::pair<std::string, std::string>> lines;  // a body, and what it can touch
+  const ContactPair* nearest = nullptr;
+  for (const ContactPair& pair : pairs) {
+    if (pair.state != PairState::kCanTouch) continue;
+    if (!nearest || pair.distance < nearest->distance) nearest = &pair;
+    const bool with_object = pair.other.empty();
+    const std::string body = with_object ? NameOfOther(pair) : pair.link;
+    const std::string& partner = with_object ? pair.link : pair.other;
+    const auto line = std::ranges::find(lines, body, &std::pair<std::string, std::string>::first);
+    if (line == lines.end())
+      lines.emplace_back(body, partner);
+    else
+      line->second += ", " + partner;
+  }
+  for (const auto& [body, partners] : lines)
+    AppendLine(text, "  cobot.touches    %s can touch %s", body.c_str(), partners.c_str());
+  if (nearest)
+    AppendLine(text, "  nearest pair     %s and %s, %s apart", nearest->link.c_str(),
+               NameOfOther(*nearest).c_str(), Millimetres(nearest->distance).c_str());
+}
+
+// Appends the pairs that cannot touch for one reason.
+void AddExcludedPairs(const std::vector<ContactPair>& pairs, PairState state, const char* reason,
+                      std::string* text) {
+  std::string names;
+  for (const ContactPair& pair : pairs) {
+    if (pair.state != state) continue;
+    names += (names.empty() ? "" : ", ") + pair.link + " and " + NameOfOther(pair);
+    if (state == PairState::kOverlaps && pair.distance < 0)
+      names += " (by " + Millimetres(-pair.distance) + ")";
+  }
+  if (!names.empty()) AppendLine(text, "  no contact       %s: %s", reason, names.c_str());
+}
+
+void AddPairs(const std::vector<ContactPair>& pairs, std::string* text) {
+  AddPossibleContacts(pairs, text);
+  AddExcludedPairs(pairs, PairState::kOverlaps, "overlap at cobot.posture", text);
+  AddExcludedPairs(pairs, PairState::kJoint, "connected by a joint", text);
+  AddExcludedPairs(pairs, PairState::kOneBody, "rigidly connected", text);
+  AddExcludedPairs(pairs, PairState::kHolds, "hand and what it holds", text);
+}
 
 bool RestsOn(double force, const StartReport& start) { return force > kCarried * start.weight; }
 
@@ -35,6 +85,7 @@ StartReport DescribeStart(const Scenario& s, const RobotModel& cobot, const Worl
   start.gaps = LinkGaps(s).At(state.q, X_WO);
   start.support = world.SupportAtStart();
   start.weight = world.object_mass() * s.environment.gravity;
+  start.pairs = world.contact_pairs();
   return start;
 }
 
@@ -77,6 +128,7 @@ void AddStart(const StartReport& start, std::string* text) {
   else if (!gap.link.empty())
     AppendLine(text, "  object to cobot  overlaps link %s by %s", gap.link.c_str(),
                Millimetres(-gap.distance).c_str());
+  AddPairs(start.pairs, text);
   if (RestsOn(start.support.floor, start))
     AppendLine(text, "  floor            the object rests on it; it carries %.0f of %.0f N",
                start.support.floor, start.weight);

@@ -19,6 +19,7 @@ struct StartReport {
   ObjectGaps gaps;                     // of the object and the cobot
   ObjectSupport support;               // of the object [N]
   double weight = 0;                   // of the object [N]
+  std::vector<ContactPair> pairs;      // of cobot.touches
 
   // Returns the angle between the last link and straight down [rad].
   double tilt() const;

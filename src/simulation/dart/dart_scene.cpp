@@ -183,6 +183,11 @@ SceneData DartScene(const Scenario& scenario, const RobotModel& cobot, const Obj
                          "simulation.joint_limits is soft, but simulation.engine is dart, whose "
                          "limits are hard. Set it to hard or none, or set simulation.engine: "
                          "mujoco.");
+  if (!scenario.cobot.touches.empty())
+    throw InputError::At("cobot.touches",
+                         "cobot.touches is given, but simulation.engine is dart, in which the "
+                         "cobot's links collide with nothing. Remove cobot.touches, or set "
+                         "simulation.engine: mujoco.");
   SceneData scene{};
   scene.step = step;
   AddJoints(scenario, cobot, &scene);

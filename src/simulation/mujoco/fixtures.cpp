@@ -103,6 +103,7 @@ void AddContacts(mjSpec* spec, const EnvironmentSpec& environment, std::size_t i
 
 void AddContact(mjSpec* spec, const std::string& shape, const std::string& other, double friction) {
   AddPair(spec, shape, other, friction, FixtureSpec());
+  spec->option.impratio = kFrictionStiffness;
 }
 
 namespace {

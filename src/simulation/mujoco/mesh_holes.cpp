@@ -162,7 +162,7 @@ void CheckHull(const ModelShape& shape, const std::string& key) {
   throw InputError::At(
       key, key + ": " + shape.place + ": The mesh " + shape.mesh.string() + " has " +
                (holes == 1 ? "a hole" : std::to_string(holes) + " holes") +
-               " through it, but its convex hull collides with the fixtures and would fill " +
+               " through it, but its convex hull collides instead of the mesh and would fill " +
                (holes == 1 ? "it" : "them") +
                ". Build the part around the hole from several <collision> boxes and cylinders.");
 }

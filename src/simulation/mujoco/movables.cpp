@@ -13,8 +13,6 @@ namespace predictor {
 namespace {
 
 constexpr double kDeepestFall = -20;  // height at which a fall ends [m]
-// With this margin, a pair of shapes has no contact at any distance [m].
-constexpr double kNoContact = -1e6;
 
 std::string Key(std::size_t i) { return "environment.objects." + std::to_string(i); }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "simulation/mujoco/cobot_contacts.h"
 #include "simulation/mujoco/full_vectors.h"
 #include "simulation/mujoco/movables.h"
 #include "simulation/mujoco/scene.h"
@@ -177,6 +178,11 @@ class MujocoEngine final : public Engine {
 
   int contact_count() const noexcept override { return data_->ncon; }
   Contact contact(int i) const noexcept override;
+  std::vector<ContactPair> contact_pairs() const override {
+    const DataPtr copy(mj_copyData(nullptr, model_, data()));
+    mj_kinematics(model_, copy.get());
+    return ContactPairsAt(*scene_, copy.get());
+  }
 
   DofFriction JointFriction(int j) const noexcept override { return FrictionOf(*scene_, j); }
   void SetJointFriction(int j, const DofFriction& friction) noexcept override {
@@ -198,7 +204,7 @@ class MujocoEngine final : public Engine {
 
   Options options() const noexcept override {
     return {(model_->opt.disableflags & mjDSBL_FRICTIONLOSS) == 0, model_->opt.tolerance,
-            MovablesTouch(*scene_)};
+            MovablesTouch(*scene_), CobotTouches(*scene_)};
   }
   void SetOptions(const Options& options) noexcept override {
     if (options.coulomb_friction)
@@ -207,6 +213,7 @@ class MujocoEngine final : public Engine {
       model_->opt.disableflags |= mjDSBL_FRICTIONLOSS;
     model_->opt.tolerance = options.tolerance;
     SetMovablesTouch(*scene_, options.movables_touch);
+    SetCobotTouches(*scene_, options.cobot_touches);
   }
   std::string SceneText() const override { return predictor::SceneText(*scene_); }
 
@@ -227,7 +234,17 @@ class MujocoEngine final : public Engine {
   // If two bodies touch, a Contact describes the body with the higher rank.
   int Rank(int geom) const noexcept {
     const int body = model_->geom_bodyid[geom];
-    return body == 0 ? 0 : scene_->movable_of[static_cast<std::size_t>(body)] >= 0 ? 1 : 2;
+    if (body == 0) return 0;
+    if (scene_->movable_of[static_cast<std::size_t>(body)] >= 0) return 1;
+    return IsLink(body) ? 2 : 3;
+  }
+  // Returns whether a body that takes part in a contact is a link of the cobot.
+  bool IsLink(int body) const noexcept {
+    return body > 0 && body != scene_->object &&
+           scene_->movable_of[static_cast<std::size_t>(body)] < 0;
+  }
+  std::string_view LinkName(int body) const noexcept {
+    return mj_id2name(model_, mjOBJ_BODY, body) + std::string_view(kCobotPrefix).size();
   }
 
   std::shared_ptr<const Scene> scene_;
@@ -256,8 +273,8 @@ Contact MujocoEngine::contact(int i) const noexcept {
       contact.fixture >= 0 && scene_->fixture_yields[static_cast<std::size_t>(contact.fixture)];
   contact.movable = scene_->movable_of[static_cast<std::size_t>(other)];
   contact.body = scene_->movable_of[static_cast<std::size_t>(body)];
-  if (body != scene_->object && contact.body < 0)
-    contact.link = mj_id2name(model_, mjOBJ_BODY, body) + std::string_view(kCobotPrefix).size();
+  if (IsLink(body)) contact.link = LinkName(body);
+  if (IsLink(other)) contact.other_link = LinkName(other);
   return contact;
 }
 

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/error.h"
 #include "core/text.h"
 #include "models/mujoco_urdf.h"
 #include "models/urdf.h"
 #include "scenario/paths.h"
+#include "simulation/mujoco/cobot_contacts.h"
 #include "simulation/mujoco/fixtures.h"
 #include "simulation/mujoco/mesh_holes.h"
 #include "simulation/mujoco/movables.h"
@@ -120,31 +122,6 @@ mjsBody* AddCobot(mjSpec* spec, const Scenario& scenario, const RobotModel& cobo
   return end_effector;
 }
 
-// Adds the collision shapes of the links that the cobot's joints move, so that fixtures can touch
-// them, and returns the names of these shapes.
-std::vector<std::string> AddCobotShapes(mjSpec* spec, const Scenario& scenario) {
-  const UrdfModel urdf = ReadUrdf(ResolveModelPath(scenario.cobot.model, scenario.folder()),
-                                  scenario.cobot.remove_links, scenario.folder());
-  std::vector<bool> moves(urdf.links.size(), false);
-  std::vector<std::string> names;
-  for (const UrdfJoint& joint : urdf.joints) {  // parents come before children
-    const auto child = static_cast<std::size_t>(joint.child);
-    moves[child] =
-        joint.type != UrdfJointType::kFixed || moves[static_cast<std::size_t>(joint.parent)];
-    const UrdfLink& link = urdf.links[child];
-    mjsBody* body = mjs_findBody(spec, (kCobotPrefix + link.name).c_str());
-    if (!moves[child] || body == nullptr) continue;
-    for (std::size_t i = 0; i < link.collisions.size(); ++i) {
-      CheckHull(link.collisions[i], "cobot.model");
-      names.push_back(kCobotPrefix + link.name + "/" + std::to_string(i));
-      mjsGeom* geom = AddShape(spec, body, link.collisions[i], names.back(), "cobot.model");
-      geom->contype = geom->conaffinity = 0;
-      geom->density = 0;  // the link's inertia is in the file
-    }
-  }
-  return names;
-}
-
 std::string ObjectShape(std::size_t i) { return "object/" + std::to_string(i); }
 
 bool TouchesAny(const EnvironmentSpec& environment, const char* what) {
@@ -154,24 +131,28 @@ bool TouchesAny(const EnvironmentSpec& environment, const char* what) {
 }
 
 // Adds the pairs of shapes that can touch. The shapes of the object must have been added before
-// this call.
-void AddAllContacts(mjSpec* spec, const Scenario& scenario, const ObjectModel& object,
-                    const MovableModels& movables) {
+// this call. Returns the pairs of cobot.touches that do not collide because they always touch.
+std::vector<ContactPair> AddAllContacts(mjSpec* spec, const Scenario& scenario,
+                                        const ObjectModel& object, const MovableModels& movables) {
   const EnvironmentSpec& environment = scenario.environment;
+  const bool own_contacts = !scenario.cobot.touches.empty();
+  std::optional<CobotShapes> links;
   std::vector<std::string> cobot, carried;
-  if (TouchesAny(environment, "cobot")) {
-    cobot = AddCobotShapes(spec, scenario);
+  if (own_contacts || TouchesAny(environment, "cobot")) {
+    links.emplace(spec, scenario, TouchesAny(environment, "cobot"));
+    cobot = links->Moving();
     RequireShapes(scenario, Toucher::kCobot, cobot.size());
   }
   RequireShapes(scenario, Toucher::kObject, object.collisions.size());
   for (std::size_t i = 0; i < object.collisions.size(); ++i) carried.push_back(ObjectShape(i));
-  if (TouchesAny(environment, "object"))
+  if (TouchesAny(environment, "object") || scenario.cobot.Touches("object"))
     for (const ModelShape& shape : object.collisions) CheckHull(shape, "object.model");
   for (std::size_t i = 0; i < environment.fixtures.size(); ++i) {
     if (environment.fixtures[i].Touches("object")) AddContacts(spec, environment, i, carried);
     if (environment.fixtures[i].Touches("cobot")) AddContacts(spec, environment, i, cobot);
   }
   AddMovableContacts(spec, environment, movables, carried, cobot);
+  return own_contacts ? links->AddContacts(spec, scenario, carried) : std::vector<ContactPair>();
 }
 
 // Adds the attachment's joint, in frame A.
@@ -329,7 +310,7 @@ Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot, bool wrist
   }
   const MovableModels movables = LoadMovables(scenario);
   AddMovables(spec, scenario.environment, movables);
-  AddAllContacts(spec, scenario, scene.object_model, movables);
+  scene.excluded_pairs = AddAllContacts(spec, scenario, scene.object_model, movables);
   scene.model.reset(mj_compile(spec, nullptr));
   if (scene.model == nullptr) {
     const std::string why = FirstLine(spec);
@@ -340,6 +321,7 @@ Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot, bool wrist
   }
   FindAddresses(&scene, scenario, cobot);
   FindMovables(scenario.environment.objects.size(), &scene);
+  FindCobotPairs(scenario, cobot, &scene);
   SetStiffness(scenario.environment, scene.fixture_of, spec, scene.model.get());
   if (carried) CheckHandles(scene, scenario);
   return scene;

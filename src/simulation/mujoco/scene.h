@@ -17,6 +17,15 @@ namespace predictor {
 
 // The prefix of the names of the cobot's links and joints.
 inline constexpr const char* kCobotPrefix = "cobot/";
+// With this margin, a pair of shapes has no contact at any distance [m].
+inline constexpr double kNoContact = -1e6;
+
+// Two bodies that have contact because of cobot.touches, in the compiled model.
+struct CobotPair {
+  int link = -1, other = -1;  // bodies; other: another link, or the object
+  bool active = true;         // false: they overlap at cobot.posture, so no contact acts
+  std::vector<int> shapes;    // the engine's pairs of shapes
+};
 
 // A movable object in the compiled model.
 struct MovableBody {
@@ -40,6 +49,8 @@ struct Scene {
   std::vector<MovableBody> movables;           // environment.objects
   std::vector<int> movable_of;                 // body: index in environment.objects; −1: another
   std::vector<int> movable_pairs;              // pairs of shapes with which movable objects touch
+  std::vector<CobotPair> cobot_pairs;          // of cobot.touches
+  std::vector<ContactPair> excluded_pairs;     // pairs of cobot.touches that always touch
   // Numbers of coordinates, excluding those of the movable objects. The coordinates of the movable
   // objects come last.
   int own_positions = 0, own_dof = 0;
@@ -47,10 +58,11 @@ struct Scene {
 
 // Composes and compiles the scene. The attachment's joint connects the object's body to the body of
 // the end-effector, so that only contacts need the constraint solver. The object collides with
-// floor, table and fixtures. The cobot's links collide with the fixtures that touch them. The
-// movable objects are free bodies that come after all other bodies. In direct mode, each handle has
-// a body without weight whose mass is set at run time. Throws InputError. `wrist_sensor` states
-// whether a sensor measures the wrench between the end-effector and the carried object.
+// floor, table and fixtures. The cobot's links collide with the fixtures that touch them, and with
+// what cobot.touches contains. The movable objects are free bodies that come after all other
+// bodies. In direct mode, each handle has a body without weight whose mass is set at run time.
+// Throws InputError. `wrist_sensor` states whether a sensor measures the wrench between the
+// end-effector and the carried object.
 Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot, bool wrist_sensor = false,
                    Holding holding = Holding::kJoint);
 
