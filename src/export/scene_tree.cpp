@@ -386,7 +386,7 @@ class Composer {
     // A fixture that appears in an event is omitted. It is absent at first, and the participant may
     // see the scene.
     for (std::size_t i = 0; i < environment.fixtures.size(); ++i)
-      if (EventsOfFixture(scenario_, i) == 0)
+      if (EventsOfFixture(scenario_, i) == 0 && !environment.fixtures[i].keep_out)
         AddFixture(kFixturePrefix + std::to_string(i), environment.fixtures[i]);
   }
 

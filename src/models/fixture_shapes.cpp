@@ -9,7 +9,8 @@ std::vector<ModelShape> FixtureShapes(const FixtureSpec& fixture) {
     made.kind = kind;
     made.size = of;
     made.X_LG = fixture.X_WG() * Pose{Vector3(0, 0, z), Quaternion::Identity()};
-    made.color = {fixture.color[0], fixture.color[1], fixture.color[2], 1};
+    made.color = {fixture.color[0], fixture.color[1], fixture.color[2],
+                  fixture.keep_out ? kKeepOutOpacity : 1};
     return made;
   };
   switch (fixture.shape) {

@@ -35,6 +35,8 @@ void Fields(V& v, FixtureSpec& s) {
   v("damping", s.damping,
     Number("N·s/m", "damping of each point of contact, with a stiffness", From(0, 1e5)));
   v("touches", s.touches, List(Word("what collides with it", {"object", "cobot"}), 1, 2));
+  v("keep_out", s.keep_out,
+    Flag("a volume that the cobot must not enter, and that nothing else touches"));
   v("color", s.color, Number("", "red, green, blue", From(0, 1)));
   v("name", s.name, Word("name by which events refer to it"));
 }

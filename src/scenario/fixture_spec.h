@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/types.h"
@@ -38,9 +39,13 @@ struct FixtureSpec {
   std::vector<std::string> touches = {"object"};  // that collide with it: object, cobot
   Vector3 color = {0.55, 0.58, 0.62};             // red, green, blue
   std::string name;                               // by which events refer to it; may be empty
+  // A volume that the cobot must not enter, and that nothing else touches. `touches` then has no
+  // effect.
+  bool keep_out = false;
 
   Pose X_WG() const { return PoseFromXyzRpy(xyz, rpy); }  // NOLINT(readability-identifier-naming)
   bool Touches(const char* what) const {
+    if (keep_out) return std::string_view(what) == "cobot";
     return std::find(touches.begin(), touches.end(), what) != touches.end();
   }
 };

@@ -50,6 +50,7 @@ struct Contact {
   double depth = 0;                    // of the penetration; negative: a gap [m]
   int fixture = -1;                    // the other's index in environment.fixtures; −1: none
   bool yields = false;                 // the fixture has a stiffness [N/m]
+  bool keep_out = false;               // the fixture is a keep-out volume
   int movable = -1;                    // the other's index in environment.objects; −1: none
   std::string_view other_link;  // the other one if it is a link of the cobot, or empty. If both
                                 // indices are −1 and this is empty, it is the floor or the table

@@ -261,12 +261,14 @@ void RefuseTouch(Engine* engine) {
 void RefuseFixture(const Contact& contact) {
   const std::string key = "environment.fixtures." + std::to_string(contact.fixture);
   const bool is_object = contact.link.empty();
+  const std::string what = contact.keep_out ? "keep-out volume" : "fixture";
   throw InputError::At(
-      key, key + ": at cobot.posture, " +
-               (is_object ? "the object" : "the cobot's link " + Quote(contact.link)) + " is " +
-               Millimetres(contact.depth) +
-               " inside this fixture. Move the fixture, or change cobot.posture" +
-               (is_object ? "." : ", or remove cobot from the fixture's touches."));
+      key,
+      key + ": at cobot.posture, " +
+          (is_object ? "the object" : "the cobot's link " + Quote(contact.link)) + " is " +
+          Millimetres(contact.depth) + " inside this " + what + ". Move the " + what +
+          ", or change cobot.posture" +
+          (is_object || contact.keep_out ? "." : ", or remove cobot from the fixture's touches."));
 }
 
 // Without this check, the search would push the bodies apart, and the run would not start as the

@@ -8,6 +8,9 @@
 namespace predictor {
 namespace {
 
+bool IsKeepOut(const FixtureSpec& fixture) { return fixture.keep_out; }
+bool IsKeepOut(const MovableSpec&) { return false; }
+
 // `key` is that of a fixture or a movable object, and `what` is the word for it.
 template <class Body>
 void RefuseWithoutShape(const Body& body, const std::string& key, const std::string& what,
@@ -18,13 +21,14 @@ void RefuseWithoutShape(const Body& body, const std::string& key, const std::str
   const std::string shapes = is_object ? "<collision>" : "<collision> in a link that a joint moves";
   const auto file =
       ResolveModelPath(is_object ? scenario.object.model : scenario.cobot.model, scenario.folder());
-  const std::string remedy =
-      body.touches.size() > 1 ? word + " from this list." : "this " + what + ".";
-  throw InputError::At(key + ".touches", key + ".touches contains " + word + ", but " +
-                                             file.string() + " has no " + shapes +
-                                             ", so nothing would collide. Add <collision> to the "
-                                             "links in this file, or remove " +
-                                             remedy);
+  const std::string remedy = body.touches.size() > 1 && !IsKeepOut(body) ? word + " from this list."
+                                                                         : "this " + what + ".";
+  const std::string member = key + (IsKeepOut(body) ? ".keep_out" : ".touches");
+  throw InputError::At(member, member + (IsKeepOut(body) ? " is true" : " contains " + word) +
+                                   ", but " + file.string() + " has no " + shapes +
+                                   ", so nothing would collide. Add <collision> to the "
+                                   "links in this file, or remove " +
+                                   remedy);
 }
 
 }  // namespace

@@ -229,6 +229,10 @@ TEST_F(DartContact, RefusesByNameWhatARigidContactCannotDo) {
             "environment.fixtures.0.touches | environment.fixtures.0.touches contains cobot, but "
             "simulation.engine is dart, in which only the object touches fixtures. Remove cobot "
             "from touches, or set simulation.engine: mujoco.");
+  EXPECT_EQ(refusal([](FixtureSpec* f) { f->keep_out = true; }),
+            "environment.fixtures.0.keep_out | environment.fixtures.0.keep_out is true, but "
+            "simulation.engine is dart, in which the cobot touches no fixtures. Remove the "
+            "fixture, or set simulation.engine: mujoco.");
   Scenario own = s;
   own.cobot.touches = {"object"};
   EXPECT_EQ(RefusalOf(own),

@@ -133,6 +133,32 @@ TEST(Fixtures, ALinkOfTheCobotIsStopped) {
   EXPECT_LT(world.state().end_effector.V_W.norm(), 0.02);
 }
 
+// The box passes through the volume, and a link does not.
+TEST(Fixtures, OnlyTheCobotIsKeptOutOfAKeepOutVolume) {
+  Scenario s = RigidBox();
+  const World free(s);
+  FixtureSpec volume;
+  volume.shape = FixtureShape::kPlane;
+  volume.xyz = free.state().end_effector.X_W.p + Vector3(0.2, 0, 0);
+  volume.rpy = {0, -M_PI / 2, 0};  // its normal is −x
+  volume.keep_out = true;
+  s.environment.fixtures = {volume};
+  World world(s);
+  double farthest = 0;
+  for (int k = 0; k < 1500; ++k) {
+    ASSERT_TRUE(world.Step(Push(s, {10, 0, 0}), kTick).ok());
+    farthest = std::max(farthest, world.state().end_effector.X_W.p.x());
+  }
+  EXPECT_LT(farthest, volume.xyz.x());
+  // The box is 0.26 m wide, and its middle is below the flange.
+  EXPECT_GT(world.state().object.X_W.p.x() + 0.13, volume.xyz.x());
+  s.environment.fixtures[0].xyz.x() -= 0.25;
+  EXPECT_NE(RefusalOf(s).find("inside this keep-out volume. Move the keep-out volume, or change "
+                              "cobot.posture."),
+            std::string::npos)
+      << RefusalOf(s);
+}
+
 // The solver's warm start is part of the state.
 TEST(Fixtures, ASavedStateContinuesBitForBitInContact) {
   const Scenario s = OnATable(0.3);

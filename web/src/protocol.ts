@@ -46,6 +46,7 @@ export interface FixtureSpec {
   size: Vec3;
   pose: Pose;
   color: Vec3;
+  keep_out?: true;  // a volume that the cobot must not enter
 }
 
 export interface ParameterSpec {

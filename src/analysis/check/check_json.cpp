@@ -122,6 +122,7 @@ Json ToJson(const StartReport& start) {
           {"nearest_link", ToJson(start.gaps.links)},
           {"nearest_link_of_hand", ToJson(start.gaps.hand)},
           {"contact_pairs", pairs},
+          {"keep_out", start.keep_out},
           {"floor_force_n", start.support.floor},
           {"other_support_n", start.support.other}};
 }
@@ -183,6 +184,7 @@ const schema::Words kWords = {
      {"link", "name of the link; empty: none is within 2 m"},
      {"clearance_m", "distance, at most 2 m; negative: depth of the overlap [m]"},
      {"contact_pairs", "the bodies that cobot.touches concerns; empty: it is empty"},
+     {"keep_out", "numbers of the fixtures that are keep-out volumes; empty: none"},
      {"other", "name of another link; empty: the carried object"},
      {"state",
       "can_touch, or why no contact acts: overlap (at cobot.posture), joint (a joint connects "
@@ -273,6 +275,7 @@ CheckReport Example() {
   report.stability->masses = report.stability->stiffnesses = {1.0};
   report.stability->table.emplace_back();
   report.start.pairs.emplace_back();
+  report.start.keep_out = {0};
   ContactReport contact;
   contact.fixtures = {0};
   contact.spectrum.emplace_back();

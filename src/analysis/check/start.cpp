@@ -86,6 +86,8 @@ StartReport DescribeStart(const Scenario& s, const RobotModel& cobot, const Worl
   start.support = world.SupportAtStart();
   start.weight = world.object_mass() * s.environment.gravity;
   start.pairs = world.contact_pairs();
+  for (std::size_t i = 0; i < s.environment.fixtures.size(); ++i)
+    if (s.environment.fixtures[i].keep_out) start.keep_out.push_back(i);
   return start;
 }
 
@@ -129,6 +131,8 @@ void AddStart(const StartReport& start, std::string* text) {
     AppendLine(text, "  object to cobot  overlaps link %s by %s", gap.link.c_str(),
                Millimetres(-gap.distance).c_str());
   AddPairs(start.pairs, text);
+  for (const std::size_t i : start.keep_out)
+    AppendLine(text, "  keep-out volume  fixture %zu; only the cobot's links collide with it", i);
   if (RestsOn(start.support.floor, start))
     AppendLine(text, "  floor            the object rests on it; it carries %.0f of %.0f N",
                start.support.floor, start.weight);

@@ -20,6 +20,7 @@ struct StartReport {
   ObjectSupport support;               // of the object [N]
   double weight = 0;                   // of the object [N]
   std::vector<ContactPair> pairs;      // of cobot.touches
+  std::vector<std::size_t> keep_out;   // numbers of the fixtures that are keep-out volumes
 
   // Returns the angle between the last link and straight down [rad].
   double tilt() const;

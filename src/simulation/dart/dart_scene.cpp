@@ -109,6 +109,8 @@ void CheckFixture(const FixtureSpec& fixture, std::size_t i) {
     refuse(".stiffness", "is given", "whose contacts are rigid. Remove stiffness and damping");
   if (fixture.time_constant != FixtureSpec{}.time_constant)
     refuse(".time_constant", "is given", "whose contacts are rigid. Remove time_constant");
+  if (fixture.keep_out)
+    refuse(".keep_out", "is true", "in which the cobot touches no fixtures. Remove the fixture");
   if (fixture.Touches("cobot"))
     refuse(".touches", "contains cobot",
            "in which only the object touches fixtures. Remove cobot from touches");

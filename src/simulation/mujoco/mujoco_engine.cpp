@@ -271,6 +271,8 @@ Contact MujocoEngine::contact(int i) const noexcept {
   contact.fixture = scene_->fixture_of[static_cast<std::size_t>(from.geom[1 - moving])];
   contact.yields =
       contact.fixture >= 0 && scene_->fixture_yields[static_cast<std::size_t>(contact.fixture)];
+  contact.keep_out =
+      contact.fixture >= 0 && scene_->fixture_keeps_out[static_cast<std::size_t>(contact.fixture)];
   contact.movable = scene_->movable_of[static_cast<std::size_t>(other)];
   contact.body = scene_->movable_of[static_cast<std::size_t>(body)];
   if (IsLink(body)) contact.link = LinkName(body);

@@ -246,6 +246,7 @@ void FindAddresses(Scene* scene, const Scenario& scenario, const RobotModel& cob
     scene->fixture_of[static_cast<std::size_t>(geom)] = static_cast<int>(i);
     scene->fixture_place.emplace_back(Eigen::Map<const Vector3>(model.geom_pos + 3 * geom));
     scene->fixture_yields.push_back(scenario.environment.fixtures[i].stiffness.has_value());
+    scene->fixture_keeps_out.push_back(scenario.environment.fixtures[i].keep_out);
     // Without this setting, RemoveFixtures would have no effect on a fixture at the world's origin.
     scene->model->geom_sameframe[geom] = mjSAMEFRAME_NONE;
   }

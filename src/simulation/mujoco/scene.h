@@ -45,6 +45,7 @@ struct Scene {
   std::vector<int> fixture_of;                 // geom: index in environment.fixtures; −1: another
   std::vector<Vector3> fixture_place;          // of each fixture, in W [m]
   std::vector<bool> fixture_yields;            // whether it has a stiffness
+  std::vector<bool> fixture_keeps_out;         // whether it is a keep-out volume
   int object_qpos = -1, object_dof = -1;       // of a free object; −1: the cobot carries it
   std::vector<MovableBody> movables;           // environment.objects
   std::vector<int> movable_of;                 // body: index in environment.objects; −1: another

@@ -13,10 +13,12 @@ const kFixtures = [
   {shape: 'capsule', size: [0.04, 0.2, 0], pose: at([0.3, -0.5, 0.14]), color: [0.2, 0.5, 0.8]},
   {shape: 'sphere', size: [0.06, 0, 0], pose: at([0.8, 0.4, 0.06]), color: [0.8, 0.2, 0.2]},
   {shape: 'plane', size: [0.5, 0.2, 0], pose: at([0.9, -0.4, 0.3]), color: [0.3, 0.6, 0.4]},
+  {shape: 'box', size: [0.3, 0.3, 0.3], pose: at([0.9, 0.3, 0.8]), color, keep_out: true},
 ];
 const kObstacle = {...kFixtures[3], pose: at([0.7, 0.1, 0.5])};
 // Half extents in W.
-const kExtents = [[0.2, 0.3, 0.02], [0.15, 0.05, 0.05], [0.04, 0.04, 0.14], [0.06, 0.06, 0.06], [0.25, 0.1, 0]];
+const kExtents = [[0.2, 0.3, 0.02], [0.15, 0.05, 0.05], [0.04, 0.04, 0.14], [0.06, 0.06, 0.06], [0.25, 0.1, 0],
+  [0.15, 0.15, 0.15]];
 
 let browser, server, page;
 
@@ -43,6 +45,12 @@ test('each fixture is drawn with its pose and size', async () => {
     }
   });
   await screenshot(page, 'fixtures');
+});
+
+test('only a keep-out volume is transparent', async () => {
+  const boxes = await page.evaluate(() => window.predictor.fixtureBoxes());
+  boxes.forEach(({opacity}, i) =>
+    assert.equal(opacity < 1, kFixtures[i].keep_out === true, kFixtures[i].shape));
 });
 
 test('a fixture of an event is drawn only while the event acts', async () => {

@@ -8,6 +8,7 @@ import {FixtureSpec, SceneSpec, Vec3} from '../protocol';
 import {kSceneColors, Theme} from '../theme';
 
 const kFloorRadius = 6;   // [m]
+const kKeepOutOpacity = 0.3;
 const kGridHalf = 3;      // [m]
 const kGridStep = 0.1;    // [m]
 const kMajorEvery = 5;    // lines
@@ -41,12 +42,13 @@ function fixtureForm({shape, size: [a, b, c]}: FixtureSpec): BufferGeometry {
 }
 
 function fixtureMesh(fixture: FixtureSpec): Mesh {
-  const {pose: {p, q}, color} = fixture;
+  const {pose: {p, q}, color, keep_out: keepOut = false} = fixture;
   const mesh = new Mesh(fixtureForm(fixture), new MeshStandardMaterial({
-    color: new Color().setRGB(...color, SRGBColorSpace), roughness: 0.8, side: DoubleSide}));
+    color: new Color().setRGB(...color, SRGBColorSpace), roughness: 0.8, side: DoubleSide,
+    transparent: keepOut, opacity: keepOut ? kKeepOutOpacity : 1, depthWrite: !keepOut}));
   mesh.position.set(...p);
   mesh.quaternion.set(q[1], q[2], q[3], q[0]);
-  mesh.castShadow = mesh.receiveShadow = true;
+  mesh.castShadow = mesh.receiveShadow = !keepOut;
   return mesh;
 }
 
@@ -117,13 +119,13 @@ export class Room {
     for (const fixture of fixtures) this.fixtures.add(fixtureMesh(fixture));
   }
 
-  get fixtureBoxes(): {min: Vec3; max: Vec3}[] {
+  get fixtureBoxes(): {min: Vec3; max: Vec3; opacity: number}[] {
     return this.fixtures.children.map((child) => {
-      const {geometry, matrix} = child as Mesh;
+      const {geometry, matrix, material} = child as Mesh<BufferGeometry, MeshStandardMaterial>;
       child.updateMatrix();
       geometry.computeBoundingBox();
       const box = geometry.boundingBox!.clone().applyMatrix4(matrix);
-      return {min: box.min.toArray(), max: box.max.toArray()};
+      return {min: box.min.toArray(), max: box.max.toArray(), opacity: material.opacity};
     });
   }
 
