@@ -42,6 +42,9 @@ TEST(Allocation, NoneInAStepForAnyController) {
       if (type == "cartesian_impedance") {
         s.cobot.controller.Set("damping_ratio=[0.7, 0.7, 0.7, 0.7, 0.7, " + FormatNumber(ratio) +
                                "]");
+      }
+      for (const char* moving : {"admittance", "cartesian_impedance", "hybrid_force_position"}) {
+        if (type != moving) continue;
         s.cobot.controller.Set("trajectory=[{time: 1, xyz: [0.1, 0, 0], rpy: [0, 0, 0.1]}]");
       }
       s.environment.table = TableSpec{};

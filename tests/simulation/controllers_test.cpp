@@ -91,9 +91,10 @@ TEST(Controllers, RefuseListsOfTheWrongLength) {
 }
 
 TEST(Controllers, RefuseWaypointsThatDoNotIncreaseInTime) {
-  EXPECT_EQ(ErrorOf("cartesian_impedance", "trajectory=[{time: 2}, {time: 1}]"),
-            "cobot.controller.trajectory.1.time is 1 s, which does not come after 2 s. Give "
-            "increasing times, of which the first is greater than 0.");
+  for (const char* type : {"admittance", "cartesian_impedance", "hybrid_force_position"})
+    EXPECT_EQ(ErrorOf(type, "trajectory=[{time: 2}, {time: 1}]"),
+              "cobot.controller.trajectory.1.time is 1 s, which does not come after 2 s. Give "
+              "increasing times, of which the first is greater than 0.");
   EXPECT_NE(ErrorOf("cartesian_impedance", "trajectory=[{time: 0}]"), "");
 }
 

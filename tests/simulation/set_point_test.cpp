@@ -47,6 +47,20 @@ TEST(SetPoint, TwistAndAccelerationAreDerivatives) {
   }
 }
 
+// The integral of the twist, by Simpson's rule.
+TEST(SetPoint, PathIsTheIntegralOfTheTwist) {
+  const SetPointTrajectory trajectory(TwoWaypoints(), kStart);
+  EXPECT_TRUE(trajectory.PathAt(0).isZero(0));
+  const double h = 1e-3;
+  Vector6 sum = Vector6::Zero();
+  for (int k = 0; k < 6000; ++k) {
+    const double t = h * k;
+    sum += h / 6 *
+           (trajectory.At(t).V_W + 4 * trajectory.At(t + h / 2).V_W + trajectory.At(t + h).V_W);
+    ASSERT_LT((trajectory.PathAt(t + h) - sum).norm(), 1e-9) << t;
+  }
+}
+
 // The peak speed of a minimum-jerk motion is 1.875 L/T (Flash & Hogan 1985).
 TEST(SetPoint, PeakSpeedIsThatOfMinimumJerk) {
   const SetPointTrajectory trajectory({{4.0, {0.3, 0, 0}, {0, 0, 0}}}, kStart);

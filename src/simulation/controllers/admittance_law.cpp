@@ -36,9 +36,11 @@ void AdmittanceLaw::Start(const ControllerInput& input) noexcept {
   Reference() = posture_;
 }
 
-// With V = 0 and a slow return to the posture, the law becomes τ − g = M (ω² (q_ref − q) − 2 ω q̇).
+// With V = 0, x = x_d and a slow return to the posture, the law becomes τ − g = M (ω² (q_ref − q) −
+// 2 ω q̇).
 void AdmittanceLaw::TakeOver(const ControllerInput& input) noexcept {
   std::fill(memory_.begin(), memory_.end(), 0.0);
+  Vector6::Map(memory_.data() + kDisplacement) = PathAt(input.time);
   M_factor_.compute(input.data->M());
   const JointVector acceleration = M_factor_.solve(*input.torque - input.data->gravity());
   Reference() = *input.q + (acceleration + 2 * omega_ * *input.v) / (omega_ * omega_);

@@ -49,8 +49,8 @@ class AdmittanceLaw : public Controller {
   bool uses_wrist_sensor() const noexcept final { return true; }
   std::span<double> memory() noexcept final { return memory_; }
   void Start(const ControllerInput& input) noexcept final;
-  // The reference begins at the value at which the torques do not jump. The tare that was taken at
-  // the start remains valid.
+  // The reference begins at the value at which the torques do not jump, and the set-point continues
+  // from the place of the end-effector. The tare that was taken at the start remains valid.
   void TakeOver(const ControllerInput& input) noexcept final;
   void Advance(const ControllerInput& input, double dt) noexcept final;
   void Compute(const ControllerInput& input, JointVector* torque) noexcept final;
@@ -64,6 +64,8 @@ class AdmittanceLaw : public Controller {
 
   // Returns F + F_a − D_d V, the wrench that accelerates M_d.
   virtual Wrench Accelerating(const ControllerInput& input, const Wrench& F) noexcept = 0;
+  // Returns the displacement x_d of the set-point since the start [m], [rad].
+  virtual Vector6 PathAt(double) const noexcept { return Vector6::Zero(); }
   // Advances the derived controller's values before V and x advance.
   virtual void AdvanceOwn(const ControllerInput&, const Wrench&, double) noexcept {}
 

@@ -14,7 +14,6 @@
 #include <string>
 
 #include "core/triangular.h"
-#include "scenario/trajectory_file.h"
 #include "simulation/controllers/controllers.h"
 #include "simulation/controllers/modal_damping.h"
 #include "simulation/controllers/set_point.h"
@@ -30,8 +29,7 @@ struct CartesianImpedanceParameters {
   double posture_stiffness = 10;                    // null space, towards cobot.posture
                                                     // [N·m/rad], [N/m]
   double posture_damping_ratio = 1.0;
-  std::vector<Waypoint> trajectory;  // empty: the set-point stays at the cobot's start
-  std::string trajectory_file;       // empty after loading, which reads it into `trajectory`
+  SetPointParameters set_point;
 };
 
 template <class V>
@@ -45,12 +43,7 @@ void Fields(V& v, CartesianImpedanceParameters& p) {
   v("posture_stiffness", p.posture_stiffness,
     Number("N·m/rad or N/m", "null space, towards cobot.posture", From(0, 1e4)));
   v("posture_damping_ratio", p.posture_damping_ratio, Number("", "null space", From(0, 5)));
-  v("trajectory", p.trajectory,
-    List(Part("points that the set-point passes; none: it stays where the cobot starts"), 0,
-         kMaxWaypoints));
-  v("trajectory_file", p.trajectory_file,
-    Word("CSV with these points, relative to this file: time [s], x, y, z [m], and optionally "
-         "roll, pitch, yaw [rad]"));
+  Fields(v, p.set_point);
 }
 
 // This value is added to Λ⁻¹ to bound Λ in a singular posture. In such a posture, J cancels the
@@ -74,7 +67,7 @@ class CartesianImpedance final : public Controller {
  public:
   CartesianImpedance(const ControllerContext& context,
                      const CartesianImpedanceParameters& parameters)
-      : set_point_(parameters.trajectory, context.X_WE_start),
+      : set_point_(parameters.set_point.trajectory, context.X_WE_start),
         posture_(context.posture),
         posture_stiffness_(parameters.posture_stiffness),
         posture_ratio_(parameters.posture_damping_ratio),

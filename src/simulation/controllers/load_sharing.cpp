@@ -63,7 +63,7 @@ class LoadSharing final : public WrenchControl {
     return p_.load.WrenchOf(Carried() + p_.inertia_share * p_.load.mass * Acceleration(V), X);
   }
 
-  double Potential(const Pose& X) const noexcept override {
+  double Potential(const Pose& X, const Pose&) const noexcept override {
     return -Carried().dot(X * p_.load.center_of_mass);
   }
 

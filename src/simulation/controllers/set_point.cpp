@@ -13,6 +13,7 @@ SetPointTrajectory::SetPointTrajectory(const std::vector<Waypoint>& waypoints, c
     : start_(start) {
   double time = 0;
   Pose from = start;
+  Vector6 before = Vector6::Zero();
   for (const Waypoint& waypoint : waypoints) {
     if (!(waypoint.time > time)) {
       const std::string key =
@@ -24,22 +25,44 @@ SetPointTrajectory::SetPointTrajectory(const std::vector<Waypoint>& waypoints, c
     }
     const Pose offset = PoseFromXyzRpy(waypoint.xyz, waypoint.rpy);
     const Pose to = {start.p + offset.p, (offset.q * start.q).normalized()};
-    segments_.push_back({time, waypoint.time, from, to.p - from.p, RotationError(to.q, from.q)});
+    segments_.push_back(
+        {time, waypoint.time, from, to.p - from.p, RotationError(to.q, from.q), before});
+    before.head<3>() += segments_.back().translation;
+    before.tail<3>() += segments_.back().rotation;
     time = waypoint.time;
     from = to;
   }
 }
 
-FrameMotion SetPointTrajectory::At(double t) const noexcept {
-  FrameMotion motion;
-  motion.X_W = start_;
+double SetPointTrajectory::Segment::Share(double t) const noexcept {
+  return std::clamp((t - start) / (end - start), 0.0, 1.0);
+}
+
+const SetPointTrajectory::Segment* SetPointTrajectory::SegmentAt(double t) const noexcept {
   const Segment* segment = nullptr;
   for (const Segment& s : segments_) {
     if (t >= s.start) segment = &s;
   }
+  return segment;
+}
+
+Vector6 SetPointTrajectory::PathAt(double t) const noexcept {
+  const Segment* segment = SegmentAt(t);
+  if (segment == nullptr) return Vector6::Zero();
+  const double position = MinimumJerk(segment->Share(t));
+  Vector6 path = segment->before;
+  path.head<3>() += position * segment->translation;
+  path.tail<3>() += position * segment->rotation;
+  return path;
+}
+
+FrameMotion SetPointTrajectory::At(double t) const noexcept {
+  FrameMotion motion;
+  motion.X_W = start_;
+  const Segment* segment = SegmentAt(t);
   if (segment == nullptr) return motion;
   const double duration = segment->end - segment->start;
-  const double s = std::clamp((t - segment->start) / duration, 0.0, 1.0);
+  const double s = segment->Share(t);
   const double position = MinimumJerk(s);
   const double speed = MinimumJerkRate(s) / duration;
   const double acceleration = 60 * s * (1 - s) * (1 - 2 * s) / (duration * duration);

@@ -2,12 +2,31 @@
 // rest to rest.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "core/messages.h"
+#include "scenario/field_rules.h"
 #include "scenario/scenario.h"
+#include "scenario/trajectory_file.h"
 
 namespace predictor {
+
+// The parameters of a controller whose set-point can move.
+struct SetPointParameters {
+  std::vector<Waypoint> trajectory;  // empty: the set-point stays at the cobot's start
+  std::string trajectory_file;       // empty after loading, which reads it into `trajectory`
+};
+
+template <class V>
+void Fields(V& v, SetPointParameters& p) {
+  v("trajectory", p.trajectory,
+    List(Part("points that the set-point passes; none: it stays where the cobot starts"), 0,
+         kMaxWaypoints));
+  v("trajectory_file", p.trajectory_file,
+    Word("CSV with these points, relative to this file: time [s], x, y, z [m], and optionally "
+         "roll, pitch, yaw [rad]"));
+}
 
 class SetPointTrajectory {
  public:
@@ -20,6 +39,8 @@ class SetPointTrajectory {
   // waypoints, position and rotation vector follow 10 s³ − 15 s⁴ + 6 s⁵ (Flash & Hogan 1985). The
   // rotation is about one axis of W.
   FrameMotion At(double t) const noexcept;
+  // Returns the integral of the set-point's twist from the start to time t [m], [rad].
+  Vector6 PathAt(double t) const noexcept;
 
  private:
   struct Segment {
@@ -27,7 +48,11 @@ class SetPointTrajectory {
     Pose from;            // X_W at the start of the segment
     Vector3 translation;  // in W [m]
     Vector3 rotation;     // rotation vector in W [rad]
+    Vector6 before;       // sum of the translations and rotation vectors of the earlier segments
+    double Share(double t) const noexcept;  // of the segment's time that has passed, from 0 to 1
   };
+  const Segment* SegmentAt(double t) const noexcept;  // the last that has begun, or null
+
   std::vector<Segment> segments_;
   Pose start_;
 };

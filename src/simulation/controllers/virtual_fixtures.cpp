@@ -87,7 +87,7 @@ class VirtualFixtures final : public WrenchControl {
     return F;
   }
 
-  double Potential(const Pose& X) const noexcept override {
+  double Potential(const Pose& X, const Pose&) const noexcept override {
     return 0.5 * p_.stiffness * Displacement(X).squaredNorm() -
            Weight().dot(X * p_.load.center_of_mass);
   }

@@ -5,10 +5,11 @@ namespace predictor::controllers {
 void WrenchControl::Compute(const ControllerInput& input, JointVector* torque) noexcept {
   const Pose X = input.data->FramePose(*input.model, input.end_effector);
   const Twist V = input.data->FrameTwist(*input.model, input.end_effector);
+  const FrameMotion d = SetPoint(input.time);
   Wrench F = Command(input, X, V);
-  F.head<3>() -= p_.damping_translation * V.head<3>();
-  F.tail<3>() += p_.stiffness_rotation * RotationError(X_start_.q, X.q);
-  F.tail<3>() -= p_.damping_rotation * V.tail<3>();
+  F.head<3>() -= p_.damping_translation * (V - d.V_W).head<3>();
+  F.tail<3>() += p_.stiffness_rotation * RotationError(d.X_W.q, X.q);
+  F.tail<3>() -= p_.damping_rotation * (V - d.V_W).tail<3>();
   input.data->FrameJacobian(*input.model, input.end_effector, &J_);
   *torque = input.data->gravity();
   torque->noalias() += J_.transpose().lazyProduct(F);
@@ -16,7 +17,8 @@ void WrenchControl::Compute(const ControllerInput& input, JointVector* torque) n
 
 double WrenchControl::StoredEnergy(const ControllerInput& input) const noexcept {
   const Pose X = input.data->FramePose(*input.model, input.end_effector);
-  return 0.5 * p_.stiffness_rotation * RotationError(X_start_.q, X.q).squaredNorm() + Potential(X);
+  const Pose X_d = SetPoint(input.time).X_W;
+  return 0.5 * p_.stiffness_rotation * RotationError(X_d.q, X.q).squaredNorm() + Potential(X, X_d);
 }
 
 }  // namespace predictor::controllers

@@ -1,9 +1,11 @@
 // The common part of the controllers that exert a wrench F at the end-effector while the cobot
 // carries its own weight:
 //
-//   τ = g + Jᵀ (F − D V + k e)
+//   τ = g + Jᵀ (F − D (V − V_d) + k e)
 //
-// k e keeps the orientation of the start (rotation vector e), and D V damps every motion.
+// k e keeps the orientation of the set-point (rotation vector e), and D damps every motion relative
+// to that of the set-point. The set-point rests at the start, unless the derived controller moves
+// it.
 #pragma once
 
 #include "simulation/controller.h"
@@ -23,7 +25,9 @@ void Fields(V& v, WrenchControlParameters& p) {
   v("damping_rotation", p.damping_rotation,
     Number("N·m·s/rad", "damping of the end-effector's rotation", From(0, 1e4)));
   v("stiffness_rotation", p.stiffness_rotation,
-    Number("N·m/rad", "stiffness towards the orientation at the start", From(0, 1e4)));
+    Number("N·m/rad",
+           "stiffness towards the orientation of the set-point, by default that of the start",
+           From(0, 1e4)));
 }
 
 // The data of the object that the controller knows.
@@ -58,8 +62,14 @@ class WrenchControl : public Controller {
   // Returns F, about E, in axes of W.
   virtual Wrench Command(const ControllerInput& input, const Pose& X_WE,
                          const Twist& V_WE) noexcept = 0;
-  // Returns the potential energy of F [J].
-  virtual double Potential(const Pose&) const noexcept { return 0; }
+  // Returns the potential energy of F [J] for a pose of the end-effector and a set-point.
+  virtual double Potential(const Pose&, const Pose&) const noexcept { return 0; }
+  // Returns the set-point at the time [s].
+  virtual FrameMotion SetPoint(double) const noexcept {
+    FrameMotion motion;
+    motion.X_W = X_start_;
+    return motion;
+  }
 
   const Pose& start() const noexcept { return X_start_; }
   double gravity() const noexcept { return gravity_; }
