@@ -2,6 +2,7 @@
 // two arms, a given cobot and an object. In the scenario, the object and the arms are placed
 // relative to the cobot's end-effector.
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <iterator>
@@ -80,7 +81,8 @@ std::string ShellWord(const std::string& text) {
 
 std::string List(const std::vector<double>& values) {
   std::vector<std::string> words;
-  for (const double value : values) words.push_back(Formatted("%.4g", value));
+  for (const double value : values)  // without rounding errors of rotations
+    words.push_back(Formatted("%.4g", std::abs(value) < 1e-9 ? 0 : value));
   return "[" + Join(words) + "]";
 }
 std::string List(const Vector3& p) { return List(std::vector<double>{p.x(), p.y(), p.z()}); }
@@ -94,7 +96,7 @@ std::string ArmText(const char* side, const Vector3& base) {
       "      base: {xyz: %s}  # in the world [m]\n"
       "      end_effector: panda_link8\n"
       "      handle: {xyz: [0, 0, 0.1], rpy: [3.14159265, 0, -0.78539816]}  # on the end-effector\n"
-      "      posture: [0, -0.5, 0, -2.3, 0, 1.8, 0.785]  # at the start [rad]\n"
+      "      posture: [0, -0.5, 0, -2.3, 0, 1.8, 0.785]  # first guess of the start [rad]\n"
       "      elbow: panda_link4\n",
       side, kPandaUrdf, List(base).c_str());
 }
@@ -272,8 +274,8 @@ std::string ResultText(const InitOptions& o, const Draft& draft, const std::stri
   const InitCobot& cobot = draft.cobot;
   std::string text;
   if (!o.urdf.empty())
-    text = Formatted("%zu joints carry link %s, which holds the %g kg object.\n",
-                     cobot.posture.size(), cobot.end_effector.c_str(), draft.mass);
+    text = Formatted("The link %s, which %zu joints move, holds the object of %g kg.\n",
+                     cobot.end_effector.c_str(), cobot.posture.size(), draft.mass);
   if (!o.urdf.empty() && !cobot.remove_links.empty())
     Append(&text,
            "The scenario leaves out these links (%.2g kg), because other joints move them: %s. To "

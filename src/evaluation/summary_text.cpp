@@ -90,9 +90,11 @@ void AddStop(const StopSummary& stop, std::string* text) {
   std::string seen = ".";
   if (const std::string measured = MeasuredWords(status); !measured.empty())
     seen = ": " + measured + ".";
-  AppendLine(text, "Stopped after %.3f s of emulation by cause '%s'%s%s%s", stop.time,
-             Name(stop.cause), stop.hand < 0 ? "" : ", hand ",
-             stop.hand < 0 ? "" : kHandNames[static_cast<std::size_t>(stop.hand)], seen.c_str());
+  const std::string hand =
+      stop.hand < 0 ? ""
+                    : ", " + std::string(kHandNames[static_cast<std::size_t>(stop.hand)]) + " hand";
+  AppendLine(text, "Stopped after %.3f s of emulation by cause '%s'%s%s", stop.time,
+             Name(stop.cause), hand.c_str(), seen.c_str());
   if (stop.fastest_joint >= 0)
     AppendLine(text, "  The fastest joint of the cobot was its joint %d.", stop.fastest_joint + 1);
   if (stop.quantity != Quantity::kNone || stop.cause == StopCause::kPhysics)

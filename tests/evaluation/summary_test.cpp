@@ -323,7 +323,7 @@ TEST(Summary, HasNoFiguresIfRunWasNotReached) {
   builder.Add(record);
   const std::string table = SummaryTable(builder.summary());
   EXPECT_NE(table.find("was never reached"), std::string::npos) << table;
-  EXPECT_NE(table.find("by cause 'device', hand left"), std::string::npos) << table;
+  EXPECT_NE(table.find("by cause 'device', left hand"), std::string::npos) << table;
   for (const char* figure : {"While gripping", "Hands", "Height", "Time per tick"})
     EXPECT_EQ(table.find(figure), std::string::npos) << table;
   const auto json = nlohmann::json::parse(SummaryJson(builder.summary()));
@@ -399,7 +399,7 @@ TEST(Summary, ReportsEachStop) {
   EXPECT_NEAR(json["stops"][1]["stop_distance_m"], 0.002, 1e-9);
   EXPECT_NEAR(json["stops"][1]["time_s"], 0.003 + 0.002, 1e-9);
   const std::string table = SummaryTable(builder.summary());
-  for (const char* part : {"2 stops:", "by cause 'force', hand right", "by cause 'enabling'"})
+  for (const char* part : {"2 stops:", "by cause 'force', right hand", "by cause 'enabling'"})
     EXPECT_NE(table.find(part), std::string::npos) << table;
 }
 

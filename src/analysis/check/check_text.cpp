@@ -67,7 +67,7 @@ void AddReach(const CheckReport& report, const Reach& reach, const char* title, 
     AppendLine(text, "  nearest links    %8.3f m  at %5.2f s   (%s; limit %.2f m)",
                pair.distance.value, pair.distance.time, pair.name.c_str(),
                report.security_distance);
-  if (reach.pairs.empty()) AppendLine(text, "  nearest links    no link pairs defined");
+  if (reach.pairs.empty()) AppendLine(text, "  nearest links    no pairs of links of the two arms");
 }
 
 void AddHandles(const Reach& reach, std::string* text) {

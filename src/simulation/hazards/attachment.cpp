@@ -39,7 +39,7 @@ const HazardKind kObjectBreaksLoose = HazardKindOf<NoParameters, Open>(
     "the object broke loose", HazardNeeds::kNoEnd);
 
 const HazardKind kObjectSlips = HazardKindOf<SlipParameters, Slip>(
-    "object_slips", "the object slips in the cobot's grip where its load is too large",
+    "object_slips", "the object slips in the cobot's grip when the load on the grip is too large",
     "the object slipped", HazardNeeds::kSlipping);
 
 }  // namespace predictor::hazards

@@ -23,7 +23,6 @@ void Appear(const ObstacleParameters&, double, Disturbance*) noexcept {}
 }  // namespace
 
 const HazardKind kObstacleAppears = HazardKindOf<ObstacleParameters, Appear>(
-    "obstacle_appears", "a fixture that was absent is there", "an obstacle appeared",
-    HazardNeeds::kFixture);
+    "obstacle_appears", "a fixture appears", "an obstacle appeared", HazardNeeds::kFixture);
 
 }  // namespace predictor::hazards
