@@ -158,22 +158,24 @@ std::optional<std::vector<double>> LoadOverRun(const std::string& what, const No
   return {};
 }
 
+// Adds the damage of the run and of each lift.
 void AddDamage(const Scenario& scenario, const NominalChain& nominal,
                std::span<const PersonSample> all, Assessment* a) {
-  const auto add = [&](const char* tool, const std::string& part, double (*moment)(const Frame&),
-                       double (*per_cycle)(double), const ergonomics::DamageRisk& risk) {
-    const auto load = LoadOverRun(std::string("damage of the ") + part + " (" + tool + ")", nominal,
-                                  moment, all, a);
-    if (load) a->damage.push_back(DamageOfMoment(tool, part, *load, per_cycle, risk));
+  const auto add = [&](const ergonomics::DamageTool& tool, const std::string& part,
+                       double (*moment)(const Frame&)) {
+    auto load = LoadOverRun(std::string("damage of the ") + part + " (" + tool.name + ")", nominal,
+                            moment, all, a);
+    if (load) a->damage.push_back(DamageOfMoment(tool, part, *load));
+    return load;
   };
-  add("LiFFT", "lower back", LiftMoment, ergonomics::LiftDamage, ergonomics::kLiftRisk);
+  if (const auto load = add(ergonomics::kLiftTool, "lower back", LiftMoment))
+    AddDamageOfLifts(all, SmoothMoment(*load), &a->lifts);
   for (int hand = 0; hand < kHands; ++hand) {
     if (!scenario.Has(hand)) continue;
     double (*const moment)(const Frame&) =
         hand == 0 ? [](const Frame& f) { return ShoulderMoment(f, 0); }
                   : [](const Frame& f) { return ShoulderMoment(f, 1); };
-    add("Shoulder Tool", std::string(HandName(hand)) + " shoulder", moment,
-        ergonomics::ShoulderDamage, ergonomics::kShoulderRisk);
+    add(ergonomics::kShoulderTool, std::string(HandName(hand)) + " shoulder", moment);
   }
 }
 
@@ -368,6 +370,7 @@ Assessment Assess(const Scenario& scenario, std::optional<double> object_mass, c
   AddReach(nominal, sampled, &a);
   AddBalanceWarning(nominal, &a);
   AddMisfit(nominal.postures, &a.measured, &a.warnings);
+  AddLifts(object_mass, run, &a);
   AddDamage(scenario, nominal, run.samples, &a);
   AddFatigue(scenario, nominal, run.samples, &a);
   AddPictures(nominal, samples, options.intervals, &a);
@@ -380,7 +383,6 @@ Assessment Assess(const Scenario& scenario, std::optional<double> object_mass, c
   AddEmgWords(a.measured.emg.channels, &a.assumptions, &a.not_evaluable);
   a.not_evaluable.insert(a.not_evaluable.end(), a.measured.emg.gaps.begin(),
                          a.measured.emg.gaps.end());
-  AddLifts(object_mass, run, &a);
   return a;
 }
 

@@ -77,9 +77,9 @@ std::string ComparisonText(const Comparison& comparison) {
   for (const DamageResult& a : comparison.damage_a)
     for (const DamageResult& b : comparison.damage_b)
       if (a.tool == b.tool && a.part == b.part)
-        AppendLine(&text, "%-52s %8.3g %8.3g",
+        AppendLine(&text, "%-52s %8.3g %8.3g%s",
                    (a.tool + ", " + a.part + ", reference day per run [%]").c_str(),
-                   100 * a.day_share, 100 * b.day_share);
+                   100 * a.day_share, 100 * b.day_share, RangeWords(a.outside() ? a : b).c_str());
   text +=
       "The values are 95th percentiles over time (5th percentile for balance). The column \"Better "
       "for\" contains the share of 64 possible postures and bodies for which this recording has "

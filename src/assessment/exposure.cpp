@@ -27,10 +27,12 @@ std::vector<double> Coarse(std::span<const double> load) {
   return coarse;
 }
 
+std::size_t RestOf(double cutoff) { return static_cast<std::size_t>(kSampleRate / cutoff); }
+
 // Applies a first-order filter forward and backward, so that the result has no delay. The filter
-// begins and ends at rest.
+// begins and ends at rest, and the result contains RestOf(cutoff) more samples at each end.
 std::vector<double> Smooth(std::span<const double> values, double cutoff) {
-  const auto rest = static_cast<std::size_t>(kSampleRate / cutoff);
+  const std::size_t rest = RestOf(cutoff);
   std::vector<double> smooth(values.size() + 2 * rest, 0);
   std::ranges::copy(values, smooth.begin() + static_cast<std::ptrdiff_t>(rest));
   const auto pass = [cutoff](auto&& range) {
@@ -56,21 +58,35 @@ std::optional<std::vector<double>> WithoutGaps(std::vector<double> load) {
   return load;
 }
 
-DamageResult DamageOfMoment(const std::string& tool, const std::string& part,
-                            std::span<const double> moment, double (*per_cycle)(double),
-                            const ergonomics::DamageRisk& risk) {
-  DamageResult result = {tool, part};
+DamageResult DamageOfRepetitions(const ergonomics::DamageTool& tool, const std::string& part,
+                                 double damage, double duration) {
+  DamageResult result = {tool.name, part};
+  result.per_run = damage;
+  result.day_share = ergonomics::ShareOfReferenceDay(damage, tool.risk);
+  const double shift = ergonomics::DamageOfShift(damage, duration, kShift);
+  result.shift_share = ergonomics::ShareOfReferenceDay(shift, tool.risk);
+  result.probability = tool.risk.Probability(shift);
+  return result;
+}
+
+DamageResult DamageOfMoment(const ergonomics::DamageTool& tool, const std::string& part,
+                            std::span<const double> moment) {
   const std::vector<double> smooth = Smooth(moment, kDamageCutoff);
   const auto [low, high] = std::ranges::minmax(smooth);
   const auto cycles =
       ergonomics::CountRainflow(smooth, std::max(kMinRange, kMinRangeShare * (high - low)));
-  result.per_run = ergonomics::DamageOf(cycles, per_cycle);
-  result.day_share = ergonomics::ShareOfReferenceDay(result.per_run, risk);
-  const double duration = static_cast<double>(moment.size()) / kSampleRate;
-  const double shift = ergonomics::DamageOfShift(result.per_run, duration, kShift);
-  result.shift_share = ergonomics::ShareOfReferenceDay(shift, risk);
-  result.probability = risk.Probability(shift);
+  DamageResult result =
+      DamageOfRepetitions(tool, part, ergonomics::DamageOf(cycles, tool.per_cycle),
+                          static_cast<double>(moment.size()) / kSampleRate);
+  for (const ergonomics::LoadCycle& cycle : cycles)
+    result.load_over_range = std::max(result.load_over_range, cycle.range / tool.largest_load);
   return result;
+}
+
+std::vector<double> SmoothMoment(std::span<const double> moment) {
+  const std::vector<double> smooth = Smooth(moment, kDamageCutoff);
+  const auto rest = static_cast<std::ptrdiff_t>(RestOf(kDamageCutoff));
+  return {smooth.begin() + rest, smooth.end() - rest};
 }
 
 void FatigueTracker::Add(double load) {

@@ -19,15 +19,23 @@ struct DamageResult {
   double day_share = 0;    // damage of the run, relative to the reference day
   double shift_share = 0;  // damage of an 8 h shift of such runs, relative to the reference day
   double probability = 0;  // probability of the tool's outcome after that shift
+  // Largest load of the run divided by DamageTool::largest_load.
+  double load_over_range = 0;
+  // If a load is beyond the tool's range, the numbers above are extrapolated and must be marked.
+  bool outside() const { return load_over_range > 1; }
 };
 
-// `moment` [N·m] covers a run at 100 Hz and is 0 at rest. The moment is low-passed at kDamageCutoff
-// in both directions. Ranges below kMinRange, or below the share kMinRangeShare of the largest
-// range, are ignored. Without these thresholds, tremor and noise would count as lifts, because, in
-// this method, each cycle causes some damage even without a load.
-DamageResult DamageOfMoment(const std::string& tool, const std::string& part,
-                            std::span<const double> moment, double (*per_cycle)(double),
-                            const ergonomics::DamageRisk& risk);
+// `moment` [N·m] covers a run at 100 Hz and is 0 at rest. The moment is low-passed with
+// SmoothMoment. Ranges below kMinRange, or below the share kMinRangeShare of the largest range, are
+// ignored. Without these thresholds, tremor and noise would count as lifts, because, in this
+// method, each cycle causes some damage even without a load.
+DamageResult DamageOfMoment(const ergonomics::DamageTool& tool, const std::string& part,
+                            std::span<const double> moment);
+// Returns the result for a run of `duration` [s] whose repetitions cause `damage` in total.
+DamageResult DamageOfRepetitions(const ergonomics::DamageTool& tool, const std::string& part,
+                                 double damage, double duration);
+// Low-passes a moment at 100 Hz at kDamageCutoff in both directions, from rest to rest.
+std::vector<double> SmoothMoment(std::span<const double> moment);
 // Design choices.
 inline constexpr double kDamageCutoff = 1;     // [Hz]
 inline constexpr double kMinRange = 5;         // [N·m]

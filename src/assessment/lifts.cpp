@@ -135,4 +135,17 @@ std::vector<Lift> LiftsOf(std::span<const PersonSample> samples, const person::S
   return lifts;
 }
 
+void AddDamageOfLifts(std::span<const PersonSample> samples, std::span<const double> moment,
+                      std::vector<Lift>* lifts) {
+  for (Lift& lift : *lifts) {
+    double largest = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      if (samples[i].body.time >= lift.begin && samples[i].body.time <= lift.end)
+        largest = std::max(largest, moment[i]);
+    lift.moment = largest;
+    lift.day_share =
+        ergonomics::ShareOfReferenceDay(ergonomics::LiftDamage(largest), ergonomics::kLiftRisk);
+  }
+}
+
 }  // namespace predictor::assessment

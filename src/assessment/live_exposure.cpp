@@ -26,15 +26,13 @@ bool LiveExposure::Gaps::TooLong() const {
 
 LiveExposure::LiveExposure(const Scenario& scenario) {
   Part& back = parts_[static_cast<std::size_t>(BodyPart::kLowerBack)];
-  back.damage_per_cycle = ergonomics::LiftDamage;
-  back.risk = &ergonomics::kLiftRisk;
+  back.tool = &ergonomics::kLiftTool;
   for (int hand = 0; hand < kHands; ++hand) {
     if (!scenario.Has(hand)) continue;
     const auto h = static_cast<std::size_t>(hand);
     Part& shoulder = parts_[static_cast<std::size_t>(BodyPart::kLeftShoulder) + h];
     shoulder.fatigue.emplace(ergonomics::FatigueJoint::kShoulder);
-    shoulder.damage_per_cycle = ergonomics::ShoulderDamage;
-    shoulder.risk = &ergonomics::kShoulderRisk;
+    shoulder.tool = &ergonomics::kShoulderTool;
     parts_[static_cast<std::size_t>(BodyPart::kLeftElbow) + h].fatigue.emplace(
         ergonomics::FatigueJoint::kElbow);
   }
@@ -51,7 +49,7 @@ void LiveExposure::Add(const Frame* frame) {
       part.fatigue->Add(
           frame ? part.fatigue_gaps.Fill(elbow ? frame->elbow_use[hand] : frame->shoulder_use[hand])
                 : 0);
-    if (part.damage_per_cycle)
+    if (part.tool)
       part.moment.push_back(
           frame ? part.moment_gaps.Fill(i == 0 ? LiftMoment(*frame) : ShoulderMoment(*frame, hand))
                 : 0);
@@ -69,14 +67,16 @@ void LiveExposure::Write(bool now, PersonState* state) {
     if (part.fatigue)
       to.capacity =
           part.fatigue_gaps.TooLong() ? kUnknown : static_cast<float>(part.fatigue->capacity());
-    if (!part.damage_per_cycle || counted_ == 0) continue;
+    if (!part.tool || counted_ == 0) continue;
     if (part.moment_gaps.TooLong()) {
-      to.damage = to.day_share = kUnknown;
+      to.damage = to.day_share = to.load_over_range = kUnknown;
       continue;
     }
-    if (due) part.damage = DamageOfMoment("", "", part.moment, part.damage_per_cycle, *part.risk);
+    if (due) part.damage = DamageOfMoment(*part.tool, "", part.moment);
     to.damage = static_cast<float>(part.damage.per_run);
     to.day_share = static_cast<float>(part.damage.day_share);
+    if (std::isfinite(part.tool->largest_load))
+      to.load_over_range = static_cast<float>(part.damage.load_over_range);
   }
 }
 

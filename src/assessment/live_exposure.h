@@ -38,9 +38,8 @@ class LiveExposure {
   };
   struct Part {
     std::optional<FatigueTracker> fatigue;
-    double (*damage_per_cycle)(double) = nullptr;  // null if there is no tool
-    const ergonomics::DamageRisk* risk = nullptr;
-    std::vector<double> moment;  // [N·m]
+    const ergonomics::DamageTool* tool = nullptr;  // null if there is no tool
+    std::vector<double> moment;                    // [N·m]
     DamageResult damage;
     Gaps moment_gaps, fatigue_gaps;
   };

@@ -41,6 +41,9 @@ std::string ValueText(const QuantityKind& kind, double x);
 std::string RangeText(const QuantityKind& kind, const std::optional<person::Interval>& range);
 // Returns an explanation of the words for Origin, which begins with "measured by ...".
 std::string OriginWords();
+// Returns words that begin with a comma if a load is beyond the range of the tool, and otherwise
+// "".
+std::string RangeWords(const DamageResult& damage);
 // These functions return one sentence for each lift, damage and fatigue result.
 std::string Sentence(const Lift& lift);
 std::string Sentence(const DamageResult& damage);

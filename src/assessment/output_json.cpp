@@ -45,6 +45,8 @@ Json ToJson(const ergonomics::HandPlace& place) {
           {"asymmetry_rad", place.asymmetry}};
 }
 
+Json OptionalNumber(const std::optional<double>& x) { return x ? Json(*x) : Json(nullptr); }
+
 Json ToJson(const Lift& lift) {
   return {{"origin_of_number", Name(Origin::kStandard)},
           {"begin_s", lift.begin},
@@ -58,7 +60,10 @@ Json ToJson(const Lift& lift) {
           {"unassisted_lifting_index",
            lift.one_hand ? Json(nullptr) : NumberOrNull(lift.niosh.unassisted.index)},
           {"share_that_accepts", lift.one_hand ? Json(nullptr) : Json(lift.share_that_accepts)},
-          {"outside_lm_mmh", lift.acceptable.outside}};
+          {"outside_lm_mmh", lift.acceptable.outside},
+          {"lifft_moment_nm", OptionalNumber(lift.moment)},
+          {"lifft_share_of_reference_day", OptionalNumber(lift.day_share)},
+          {"outside_lifft", lift.outside_lifft()}};
 }
 
 Json ToJson(const DamageResult& d) {
@@ -68,10 +73,9 @@ Json ToJson(const DamageResult& d) {
           {"damage_per_run", d.per_run},
           {"share_of_reference_day_per_run", d.day_share},
           {"share_of_reference_day_per_shift", d.shift_share},
-          {"probability_of_outcome", d.probability}};
+          {"probability_of_outcome", d.probability},
+          {"outside_range", d.outside()}};
 }
-
-Json OptionalNumber(const std::optional<double>& x) { return x ? Json(*x) : Json(nullptr); }
 
 Json ToJson(const LimitResult& r) {
   return {{"origin", Name(Origin::kStandard)},

@@ -210,7 +210,7 @@ std::string DamageTable(const Assessment& a) {
   std::vector<std::vector<std::string>> rows = {
       {"Part", "Method", "One run", "A shift of such runs", "Probability"}};
   for (const DamageResult& d : a.damage)
-    rows.push_back({EscapeMarkup(d.part), EscapeMarkup(d.tool),
+    rows.push_back({EscapeMarkup(d.part), EscapeMarkup(d.tool + RangeWords(d)),
                     Formatted("%.3g %%", 100 * d.day_share),
                     Formatted("%.3g %%", 100 * d.shift_share), Percent(d.probability)});
   return HtmlTable(rows);

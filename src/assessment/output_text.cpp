@@ -76,6 +76,15 @@ void AppendSentences(const char* title, const std::vector<T>& list, std::string*
   for (const T& entry : list) AppendLine(text, "  %s", Sentence(entry).c_str());
 }
 
+// Returns a sentence that begins with a space, or "" if the moment of the lift is not known.
+std::string DamageWords(const Lift& lift) {
+  if (!lift.moment) return "";
+  return Formatted(
+      " This lift uses %.3g %% of a reference day (LiFFT, largest moment %.0f N·m%s).",
+      100 * *lift.day_share, *lift.moment,
+      lift.outside_lifft() ? ", beyond the range of the method, which is 100 N·m" : "");
+}
+
 std::string Index(double index) {
   return std::isfinite(index) ? Formatted("%.2f", index) : "outside the equation's range";
 }
@@ -118,27 +127,39 @@ std::string ReachSentence(const Assessment& a) {
   return text + ".";
 }
 
+std::string RangeWords(const DamageResult& damage) {
+  return damage.outside() ? Formatted(
+                                ", extrapolated: the largest load is %.0f %% of the largest "
+                                "load for which the method is valid",
+                                100 * damage.load_over_range)
+                          : "";
+}
+
 std::string Sentence(const Lift& lift) {
   if (lift.one_hand)
     return Formatted(
-        "%.1f to %.1f s, from %.2f to %.2f m above the ground, with one hand: the lifting "
-        "equations apply only to two hands.",
-        lift.begin, lift.end, lift.origin.height, lift.destination.height);
+               "%.1f to %.1f s, from %.2f to %.2f m above the ground, with one hand: the lifting "
+               "equations apply only to two hands.",
+               lift.begin, lift.end, lift.origin.height, lift.destination.height) +
+           DamageWords(lift);
   return Formatted(
-      "%.1f to %.1f s, from %.2f to %.2f m above the ground: the hands carry %.1f kg. Lifting "
-      "index %s (%s), %s without the cobot. Lifting this load for a day is acceptable to %.0f %% "
-      "of people of the operator's sex (LM-MMH%s).",
-      lift.begin, lift.end, lift.origin.height, lift.destination.height,
-      lift.vertical_force / kStandardGravity, Index(lift.niosh.carried.index).c_str(),
-      ergonomics::AssistedLift::kCarriedLabel, Index(lift.niosh.unassisted.index).c_str(),
-      100 * lift.share_that_accepts, lift.acceptable.outside ? ", limited to its range" : "");
+             "%.1f to %.1f s, from %.2f to %.2f m above the ground: the hands carry %.1f kg. "
+             "Lifting index %s (%s), %s without the cobot. Lifting this load for a day is "
+             "acceptable to %.0f %% of people of the operator's sex (LM-MMH%s).",
+             lift.begin, lift.end, lift.origin.height, lift.destination.height,
+             lift.vertical_force / kStandardGravity, Index(lift.niosh.carried.index).c_str(),
+             ergonomics::AssistedLift::kCarriedLabel, Index(lift.niosh.unassisted.index).c_str(),
+             100 * lift.share_that_accepts,
+             lift.acceptable.outside ? ", limited to its range" : "") +
+         DamageWords(lift);
 }
 
 std::string Sentence(const DamageResult& damage) {
   return Formatted(
       "%s, %s: one run causes %.3g %% of the damage of a reference day, a shift of such runs %.3g "
-      "%%.",
-      damage.tool.c_str(), damage.part.c_str(), 100 * damage.day_share, 100 * damage.shift_share);
+      "%%%s.",
+      damage.tool.c_str(), damage.part.c_str(), 100 * damage.day_share, 100 * damage.shift_share,
+      RangeWords(damage).c_str());
 }
 
 std::string Sentence(const FatigueResult& fatigue) {

@@ -227,6 +227,9 @@ struct PartState {
   float capacity = kUnknown;   // strength that remains despite fatigue (3CC-r), as a share
   float damage = kUnknown;     // of the run so far: LiFFT for the lower back, Shoulder Tool
   float day_share = kUnknown;  // the same as a share of the tool's reference day
+  // Largest load of the run, as a share of the largest load in the tool's range. If it is above 1,
+  // the damage is extrapolated. Unknown if the tool has no such limit.
+  float load_over_range = kUnknown;
 };
 
 // Times are simulated times since RUN began [s]. Loads and scores are older than the points by the
@@ -283,6 +286,11 @@ void VisitParts(V& v, S& s) {
       in.Number("capacity", "", "strength that fatigue leaves, as a share", part->capacity);
       in.Number("damage", "", "of the run so far", part->damage);
       in.Number("day_share", "", "damage as a share of the tool's reference day", part->day_share);
+      in.Number(
+          "load_over_range", "",
+          "largest load of the run, as a share of the largest load in the tool's range; above "
+          "1: the damage is extrapolated",
+          part->load_over_range);
     });
 }
 

@@ -21,6 +21,7 @@
 // ACGIH's hand activity level is omitted because no sensor measures the effort of the grip.
 #pragma once
 
+#include <limits>
 #include <span>
 
 #include "ergonomics/rainflow.h"
@@ -41,8 +42,9 @@ struct DamageRisk {
 inline constexpr DamageRisk kLiftRisk = {1.72, 1.03};
 // `load_moment` [N·m] is the moment of the handled load about the lower back, which is the load
 // times its horizontal distance. This moment does not include the weight of the trunk. Interpret
-// results above 100 N·m with care.
+// results above kLargestLiftMoment with care.
 double LiftDamage(double load_moment);
+inline constexpr double kLargestLiftMoment = 100;  // [N·m]
 
 // ---- Hand and forearm: DUET (Gallagher et al. 2018; verified against its table and examples) ----
 // Outcome: injury, or pain in the last year.
@@ -60,6 +62,19 @@ double ShoulderDamage(double moment);
 // `lever` [m] from the shoulder. The arm weighs 8.6 lb, and its weight acts at half the distance.
 // For pushes and pulls, use the product force · lever as the moment.
 double ShoulderMoment(double force, double lever);
+
+// A tool for the damage of one part of the body.
+struct DamageTool {
+  const char* name;
+  double (*per_cycle)(double load);  // damage of one repetition
+  DamageRisk risk;
+  double largest_load;  // the largest load of the tool's range; infinite: no limit is known
+};
+inline constexpr double kNoLargestLoad = std::numeric_limits<double>::infinity();
+inline constexpr DamageTool kLiftTool = {"LiFFT", LiftDamage, kLiftRisk, kLargestLiftMoment};
+inline constexpr DamageTool kHandTool = {"DUET", HandDamage, kHandRisk, kNoLargestLoad};
+inline constexpr DamageTool kShoulderTool = {"Shoulder Tool", ShoulderDamage, kShoulderRisk,
+                                             kNoLargestLoad};
 
 // ---- A run, and a shift ----
 

@@ -25,8 +25,7 @@ std::vector<double> LiftsWith(const std::vector<double>& peaks) {
 }
 
 DamageResult OfBack(const std::vector<double>& moment) {
-  return DamageOfMoment("LiFFT", "lower back", moment, ergonomics::LiftDamage,
-                        ergonomics::kLiftRisk);
+  return DamageOfMoment(ergonomics::kLiftTool, "lower back", moment);
 }
 
 TEST(Exposure, AddsTheDamageOfEachLift) {
@@ -54,6 +53,25 @@ TEST(Exposure, NoiseAndTremorHardlyChangeTheDamage) {
 TEST(Exposure, ASteadyMomentIsOneLift) {
   const std::vector<double> moment(3000, 50);
   EXPECT_NEAR(OfBack(moment).per_run / ergonomics::LiftDamage(50), 1, 0.01);
+}
+
+// LiFFT is valid up to 100 N·m, and the Shoulder Tool states no such limit.
+TEST(Exposure, ALoadBeyondTheRangeOfTheToolIsMarked) {
+  EXPECT_FALSE(OfBack(LiftsWith({60, 98})).outside());
+  const DamageResult beyond = OfBack(LiftsWith({60, 120}));
+  EXPECT_TRUE(beyond.outside());
+  EXPECT_NEAR(beyond.load_over_range, 1.2, 0.01);
+  EXPECT_FALSE(
+      DamageOfMoment(ergonomics::kShoulderTool, "left shoulder", LiftsWith({120})).outside());
+}
+
+// The low-passed moment has the samples of the moment, and no delay.
+TEST(Exposure, TheSmoothMomentIsSymmetric) {
+  const std::vector<double> moment = LiftsWith({80});
+  const std::vector<double> smooth = SmoothMoment(moment);
+  ASSERT_EQ(smooth.size(), moment.size());
+  EXPECT_NEAR(smooth[400], 80, 0.5);
+  EXPECT_NEAR(smooth[300 - 20], smooth[499 + 20], 0.01);
 }
 
 TEST(Exposure, AShortGapIsFilledAndALongOneIsNot) {

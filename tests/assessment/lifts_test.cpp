@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "assessment/assessment.h"
+#include "assessment/output.h"
 #include "assessment/samples.h"
 
 namespace predictor::assessment {
@@ -62,6 +64,43 @@ TEST(Lifts, AreRisesThatEndInAReversalAndNotNoise) {
 TEST(Lifts, EndWhenTheHandsRelease) {
   const auto holds = [](double t) { return t < 1.5 || t > 3.5; };
   EXPECT_EQ(LiftsIn(6, OneLift, holds).size(), 0U);  // it had risen by 0.04 m, and rests later
+}
+
+// The hands carry a load only around the middle of the lift.
+Assessment JudgeOneLift(double force) {
+  const Scenario scenario = PersonScenario();
+  const SampleCollector run = Collect(scenario, 6, [&](std::uint64_t tick) {
+    const double t = 1e-3 * static_cast<double>(tick);
+    return RecordOf(tick, OneLift(t), force * std::exp(-8 * (t - 2) * (t - 2)));
+  });
+  return Assess(scenario, 9, run, {.intervals = false});
+}
+
+// A run with a single load causes the damage of its lift.
+TEST(Lifts, CauseTheDamageOfTheirLargestMoment) {
+  const Assessment a = JudgeOneLift(60);
+  ASSERT_EQ(a.lifts.size(), 1U);
+  ASSERT_TRUE(a.lifts[0].moment);
+  EXPECT_GT(*a.lifts[0].moment, 15);
+  EXPECT_LT(*a.lifts[0].moment, 2 * 60 * 0.5);  // the hands are at most 0.5 m from the disc
+  ASSERT_EQ(a.damage[0].tool, "LiFFT");
+  EXPECT_NEAR(*a.lifts[0].day_share / a.damage[0].day_share, 1, 0.01);
+  EXPECT_NE(AssessmentText(a).find("This lift uses"), std::string::npos);
+  EXPECT_EQ(AssessmentText(a).find("beyond the range"), std::string::npos);
+}
+
+TEST(Lifts, BeyondTheRangeOfLifftAreMarkedEverywhere) {
+  const Assessment a = JudgeOneLift(400);
+  ASSERT_GT(*a.lifts.at(0).moment, 100);
+  const std::string text = AssessmentText(a), page = AssessmentPage(a, "1.0");
+  for (const char* words :
+       {"beyond the range of the method", "extrapolated: the largest load is"}) {
+    EXPECT_NE(text.find(words), std::string::npos) << words;
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+  }
+  const std::string json = AssessmentJson(a);
+  EXPECT_NE(json.find(R"("outside_lifft": true)"), std::string::npos);
+  EXPECT_NE(json.find(R"("outside_range": true)"), std::string::npos);
 }
 
 // The middle of the hands jumps when one hand lets go, but nothing was lifted.

@@ -14,7 +14,7 @@ export interface PersonState {
   sampled_reached: number | null;  // share of the possible people who reach both
   warnings: ('lower_back_compression' | 'lower_back_shear' | 'balance' | 'left_shoulder' | 'right_shoulder' | 'left_elbow' | 'right_elbow' | 'rula' | 'reba' | 'owas' | 'reach')[];  // active warnings
   points: Record<'pelvis' | 'l5s1' | 'neck' | 'head' | 'eyes' | 'left_shoulder' | 'left_elbow' | 'left_wrist' | 'left_hand' | 'right_shoulder' | 'right_elbow' | 'right_wrist' | 'right_hand' | 'left_hip' | 'left_knee' | 'left_ankle' | 'left_toes' | 'right_hip' | 'right_knee' | 'right_ankle' | 'right_toes', [number, number, number] | null>;  // in W [m]
-  parts: Record<'lower_back' | 'left_shoulder' | 'right_shoulder' | 'left_elbow' | 'right_elbow', Record<'load' | 'capacity' | 'damage' | 'day_share', number | null>>;
+  parts: Record<'lower_back' | 'left_shoulder' | 'right_shoulder' | 'left_elbow' | 'right_elbow', Record<'load' | 'capacity' | 'damage' | 'day_share' | 'load_over_range', number | null>>;
   gauges: Record<'lower_back_compression' | 'lower_back_shear' | 'lower_back_moment' | 'balance_margin' | 'trunk_flexion' | 'left_shoulder_use' | 'right_shoulder_use' | 'left_elbow_use' | 'right_elbow_use' | 'left_hand_force' | 'right_hand_force' | 'left_arm_activation' | 'right_arm_activation' | 'left_hand_stiffness' | 'right_hand_stiffness', Record<'value' | 'low' | 'high', number | null>>;
   scores: Record<'rula' | 'reba' | 'owas', {score: number; level: number; probability: number[] | null}>;
 }

@@ -75,7 +75,7 @@ export function personMessage(spec, t, tick, hands, wrenches, status = 'judged',
   const {points, lean} = pointsOf(spec.viewpoint, hands);
   const known = gauges(t, lean, wrenches);
   const nothing = (object) => Object.fromEntries(Object.entries(object).map(([name]) => [name, null]));
-  const part = (load, capacity) => ({load: judged ? load : null, capacity, damage: 1e-7 * t, day_share: 3e-6 * t});
+  const part = (load, capacity) => ({load: judged ? load : null, capacity, damage: 1e-7 * t, day_share: 3e-6 * t, load_over_range: null});
   const elbow = (load, capacity) => ({...part(load, capacity), damage: null, day_share: null});
   const score = (value, level, probability) =>
     (judged ? {score: value, level, probability} : {score: 0, level: 0, probability: null});
@@ -85,7 +85,7 @@ export function personMessage(spec, t, tick, hands, wrenches, status = 'judged',
     head: judged ? head : 'modelled', reached: true, miss: 0, sampled_reached: 1, warnings: warns ? ['left_shoulder'] : [],
     points: judged ? points : nothing(points),
     parts: {
-      lower_back: part(known.lower_back_compression.value / 3400, null),
+      lower_back: {...part(known.lower_back_compression.value / 3400, null), load_over_range: 0.4},
       left_shoulder: part(known.left_shoulder_use.value, 0.97), right_shoulder: part(known.right_shoulder_use.value, 0.96),
       left_elbow: elbow(known.left_elbow_use.value, 0.99), right_elbow: elbow(known.right_elbow_use.value, 0.98),
     },

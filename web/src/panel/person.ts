@@ -218,8 +218,9 @@ export class PersonCard {
 // repeated.
 export function damageText({parts, since}: PersonState): string {
   const cost = (name: keyof PersonState['parts']) => {
-    const part = parts[name].day_share;
-    return part === null ? null : `${name.replace('_', ' ')} ${(100 * part).toPrecision(2)} %`;
+    const {day_share: share, load_over_range: range} = parts[name];
+    const mark = range !== null && range > 1 ? ' (beyond the range of the method)' : '';
+    return share === null ? null : `${name.replace('_', ' ')} ${(100 * share).toPrecision(2)} %${mark}`;
   };
   const costs = (['lower_back', 'left_shoulder', 'right_shoulder'] as const).map(cost).filter((text) => text !== null);
   return costs.length === 0 ? '' : `Damage${since !== null && since > kLateStart ? ` since ${since.toFixed(0)} s` : ''}, as a share of a reference day: ${costs.join(', ')}.`;
