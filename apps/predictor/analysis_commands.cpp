@@ -101,6 +101,18 @@ void AddEvaluate(CLI::App* app, Request* r) {
   evaluate
       ->add_flag("--held", o->held, "In the real work, postures are held for more than a minute")
       ->group("Work");
+  AddOption(evaluate, "Work", "--duration", &o->lifting, "1h|2h|8h",
+            "Lifts like those of the run go on for at most this time (NIOSH's three durations)")
+      ->check(CLI::IsMember({"1h", "2h", "8h"}))
+      ->capture_default_str();
+  AddOption(evaluate, "Work", "--coupling", &o->coupling, "good|fair|poor",
+            "How well the hands can grip the object, for NIOSH and REBA")
+      ->check(CLI::IsMember({"good", "fair", "poor"}))
+      ->capture_default_str();
+  AddOption(evaluate, "Work", "--grip-effort", &o->grip_effort, "NUMBER",
+            "Effort with which the hands grip, from 0 (extremely easy) to 10 (extremely hard), for "
+            "DUET; no sensor measures it")
+      ->check(CLI::Range(0.0, 10.0));
   AddOption(
       evaluate, "Person", "--arm-model", &o->arm_model, "PATH",
       "Use the arm muscles of MyoArm instead of the built-in model: the folder myo_sim/models of "

@@ -154,6 +154,9 @@ struct EvaluateOptions : PersonOptions {
   std::vector<std::string> against_tracks;  // further measurements of its person
   bool intervals = true;
   bool repeated = false, held = false;  // see assessment::WorkPattern
+  std::string lifting = "1h";           // duration of the work with lifts
+  std::string coupling = "good";        // of hands and handles
+  std::optional<double> grip_effort;    // 0 … 10
   std::string arm_model;                // MyoArm, folder or MJCF; empty: the built-in model
   std::vector<std::string> limits;      // files of limits that a run must keep
   std::string contact_limits;           // file of limits for unintended contact; empty: none

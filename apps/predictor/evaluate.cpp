@@ -38,6 +38,19 @@ void AddSafety(const EvaluatedRun& run, const EvaluateOptions& options,
   result->safety = JudgeSafety(run.scenario, result->setup, *run.safety, judge);
 }
 
+assessment::WorkPattern WorkOf(const EvaluateOptions& options) {
+  using ergonomics::Coupling, ergonomics::LiftDuration;
+  assessment::WorkPattern work{.repeated = options.repeated, .held = options.held};
+  work.coupling = options.coupling == "good"   ? Coupling::kGood
+                  : options.coupling == "fair" ? Coupling::kFair
+                                               : Coupling::kPoor;
+  work.lifting = options.lifting == "1h"   ? LiftDuration::kShort
+                 : options.lifting == "2h" ? LiftDuration::kModerate
+                                           : LiftDuration::kLong;
+  work.grip_effort = options.grip_effort;
+  return work;
+}
+
 assessment::Assessment Evaluate(const EvaluateOptions& options, const std::string& file,
                                 const std::vector<std::string>& tracks) {
   std::vector<assessment::UserLimits> limits;
@@ -48,7 +61,7 @@ assessment::Assessment Evaluate(const EvaluateOptions& options, const std::strin
   assessment::AssessOptions how = run.Options();
   how.intervals = options.intervals;
   if (!options.arm_model.empty()) how.arm = muscles::LoadMyoArm(options.arm_model);
-  how.work = {.repeated = options.repeated, .held = options.held};
+  how.work = WorkOf(options);
   how.progress = [&](double share) { progress.Update(share); };
   assessment::Assessment result = Assess(run.scenario, run.object_mass, run.run, how);
   for (const assessment::UserLimits& limit : limits) JudgeUserLimits(limit, &result);
@@ -102,13 +115,17 @@ std::string StemOf(const std::string& recording) {
   return std::filesystem::path(recording).replace_extension("").filename().string();
 }
 
-int EvaluateOne(const EvaluateOptions& options) {
+// Adds the lifts and the minutes of the recording.
+int EvaluateOne(const EvaluateOptions& options, std::vector<assessment::Lift>* lifts,
+                double* minutes) {
   const std::string stem = std::filesystem::path(options.recording).replace_extension("").string();
   const std::string page = options.page.empty() ? stem + ".person.html" : options.page;
   options.CheckWritable();
   options.RefuseToReplace(page);
   options.RefuseToReplace(options.csv);
   const assessment::Assessment result = Evaluate(options, options.recording, options.tracks);
+  lifts->insert(lifts->end(), result.lifts.begin(), result.lifts.end());
+  *minutes += result.duration / 60;
   std::string text = AssessmentText(result);
   std::optional<assessment::Comparison> comparison;
   if (!options.against.empty()) {
@@ -155,14 +172,18 @@ EvaluateOptions OptionsFor(const std::string& recording, const EvaluateOptions& 
 }  // namespace
 
 int EvaluateCommand(const EvaluateOptions& options) {
+  std::vector<assessment::Lift> lifts;
+  double minutes = 0;
   if (options.recordings.size() == 1) {
     EvaluateOptions one = options;
     one.recording = options.recordings.front();
-    return EvaluateOne(one);
+    return EvaluateOne(one, &lifts, &minutes);
   }
   RefuseForSeveral(options);
   for (const std::string& recording : options.recordings)
-    EvaluateOne(OptionsFor(recording, options));
+    EvaluateOne(OptionsFor(recording, options), &lifts, &minutes);
+  const assessment::LiftingJob job = assessment::JobOf(lifts, minutes);
+  if (job.lifts > 1) options.Print("\nAll recordings: " + Sentence(job) + "\n");
   return kFinished;
 }
 

@@ -290,6 +290,18 @@ void AddPictures(const NominalChain& nominal, std::span<const PersonSample> samp
         PictureAt(a->setup, samples, nominal, k * (samples.size() - 1) / (kPictures - 1), false));
 }
 
+const char* DurationWords(ergonomics::LiftDuration duration) {
+  constexpr const char* kWords[] = {"for at most one hour, with as much rest afterwards",
+                                    "for at most two hours, with 0.3 times as much rest afterwards",
+                                    "for at most eight hours, with the usual breaks"};
+  return kWords[static_cast<std::size_t>(duration)];
+}
+
+const char* CouplingWords(ergonomics::Coupling coupling) {
+  constexpr const char* kWords[] = {"good", "fair", "poor", "unacceptable"};
+  return kWords[static_cast<std::size_t>(coupling)];
+}
+
 void AddWords(const Scenario& scenario, const WorkPattern& work, Assessment* a) {
   a->assumptions = {
       "The feet stay where operator.stance places them.",
@@ -297,8 +309,9 @@ void AddWords(const Scenario& scenario, const WorkPattern& work, Assessment* a) 
       "The acceleration of the trunk is neglected, because the trunk moves slowly.",
       std::string("For RULA and REBA, the postures are ") + (work.repeated ? "" : "not ") +
           "repeated four times a minute and " + (work.held ? "" : "not ") +
-          "held for more than a minute, and the handles are easy to grip.",
-      "The lifting index assumes lifts at the rate of this run, and for at most one hour.",
+          "held for more than a minute.",
+      std::string("The lifting equations assume lifts at the rate of this run, ") +
+          DurationWords(work.lifting) + ", and " + CouplingWords(work.coupling) + " handles.",
       std::string("Strength is the mean for the person's sex") +
           (work.strength == WorkPattern().strength ? "" : ", times operator.body.strength") +
           ", for flexion and extension only."};
@@ -309,7 +322,6 @@ void AddWords(const Scenario& scenario, const WorkPattern& work, Assessment* a) 
   if (scenario.operator_.type == "person")
     a->assumptions.emplace_back(
         "The hands held the handles throughout: real arms cannot sense whether a hand is there.");
-  a->not_evaluable.push_back({"DUET (hand and forearm)", "the effort of the grip is not measured"});
   a->not_evaluable.push_back(
       {"raised shoulders", "the shoulder girdle does not move in the model"});
   if (scenario.operator_.type == "browser")
@@ -318,11 +330,42 @@ void AddWords(const Scenario& scenario, const WorkPattern& work, Assessment* a) 
                                 "person who holds them"});
 }
 
-void AddLifts(std::optional<double> object_mass, const PersonRun& run, Assessment* a) {
-  if (object_mass)
-    a->lifts = LiftsOf(run.samples, a->setup.stance, *object_mass, a->setup.body.sex);
-  else
+void AddLifts(std::optional<double> object_mass, const PersonRun& run, const WorkPattern& work,
+              Assessment* a) {
+  a->not_evaluable.push_back(
+      {"pushing, pulling and carrying (LM-MMH)",
+       Formatted("this method was made for people who walk at least %.1f m, and here the hands "
+                 "move horizontally by at most %.2f m, while the feet stand",
+                 ergonomics::kShortestHorizontal, HorizontalTravel(run.samples, a->setup.stance))});
+  if (!object_mass) {
     a->not_evaluable.push_back({"lifting equations", "the mass of the object is not known"});
+    return;
+  }
+  a->lifts = LiftsOf(run.samples, a->setup.stance,
+                     {*object_mass, a->setup.body.sex, work.lifting, work.coupling});
+  const LiftingJob job = JobOf(a->lifts, a->duration / 60);
+  if (job.lifts > 1) a->job = job;
+}
+
+// Adds DUET if the effort of the grip was stated.
+void AddHandDamage(const Scenario& scenario, std::span<const PersonSample> all,
+                   const WorkPattern& work, Assessment* a) {
+  if (!work.grip_effort) {
+    a->not_evaluable.push_back({"DUET (hand and forearm)",
+                                "the effort of the grip is not measured, and it was not stated "
+                                "with --grip-effort"});
+    return;
+  }
+  for (int hand = 0; hand < kHands; ++hand) {
+    if (!scenario.Has(hand)) continue;
+    const std::size_t exertions = ExertionsOf(all, static_cast<std::size_t>(hand), a->lifts);
+    a->damage.push_back(DamageOfRepetitions(
+        ergonomics::kHandTool, std::string(HandName(hand)) + " hand and forearm",
+        static_cast<double>(exertions) * ergonomics::HandDamage(*work.grip_effort), a->duration));
+    a->assumptions.push_back(
+        Formatted("The %s hand gripped %zu times with an effort of %g of 10, which you stated.",
+                  HandName(hand), exertions, *work.grip_effort));
+  }
 }
 
 }  // namespace
@@ -370,11 +413,12 @@ Assessment Assess(const Scenario& scenario, std::optional<double> object_mass, c
   AddReach(nominal, sampled, &a);
   AddBalanceWarning(nominal, &a);
   AddMisfit(nominal.postures, &a.measured, &a.warnings);
-  AddLifts(object_mass, run, &a);
+  AddLifts(object_mass, run, work, &a);
   AddDamage(scenario, nominal, run.samples, &a);
   AddFatigue(scenario, nominal, run.samples, &a);
   AddPictures(nominal, samples, options.intervals, &a);
   AddWords(scenario, work, &a);
+  AddHandDamage(scenario, run.samples, work, &a);
   AddMuscleWords(nominal, &a.warnings, &a.assumptions, &a.not_evaluable);
   if (options.arm)
     a.assumptions.push_back(

@@ -66,6 +66,8 @@ struct Assessment {
                                              // Quantities()
   std::vector<WorksheetResult> worksheets;   // results in the order of Worksheets()
   std::vector<Lift> lifts;
+  std::optional<LiftingJob>
+      job;  // without a value if there are fewer than two lifts with two hands
   std::vector<DamageResult> damage;
   std::vector<FatigueResult> fatigue;
   std::vector<LimitResult> limits;         // filled by JudgeUserLimits

@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 
 #include "assessment/muscle_use.h"
+#include "ergonomics/niosh.h"
 #include "ergonomics/owas.h"
 #include "ergonomics/reba.h"
 #include "ergonomics/rula.h"
@@ -20,6 +22,11 @@ struct WorkPattern {
   bool repeated = false;  // the person takes the same posture at least four times a minute
   bool held = false;      // a posture is static for more than a minute
   ergonomics::Coupling coupling = ergonomics::Coupling::kGood;
+  // Duration of the work with lifts like those of the run.
+  ergonomics::LiftDuration lifting = ergonomics::LiftDuration::kShort;
+  // Effort with which a hand grips a handle, 0 … 10 (OMNI-RES). Without a value, DUET is not
+  // evaluated, because no sensor measures this effort.
+  std::optional<double> grip_effort;
   // Strength of the person, as a multiple of the mean for the person's sex (BodySpec::strength).
   std::array<double, ergonomics::kStrengthDirections> strength = {1, 1, 1, 1};
 };

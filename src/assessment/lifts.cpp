@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/types.h"
@@ -93,46 +94,108 @@ double MeanVerticalForce(std::span<const PersonSample> samples) {
   return sum / static_cast<double>(samples.size());
 }
 
-void Assess(double object_mass, double per_minute, Sex sex, Lift* lift) {
-  ergonomics::LiftTask whole;
-  whole.mean_load = whole.max_load = object_mass;
+void Judge(const LiftingWork& work, double per_minute, Lift* lift) {
+  ergonomics::LiftTask& whole = lift->task;
+  whole.mean_load = whole.max_load = work.object_mass;
   whole.origin = lift->origin;
   whole.destination = lift->destination;
   whole.frequency = per_minute;
-  lift->niosh = ergonomics::AssessAssistedLift(whole, lift->vertical_force);
+  whole.duration = work.duration;
+  whole.coupling = work.coupling;
+  if (!lift->lowered) lift->niosh = ergonomics::AssessAssistedLift(whole, lift->vertical_force);
   const ergonomics::VerticalHandling task = {
       .reach = std::max(lift->origin.horizontal, lift->destination.horizontal),
       .mid_height = (lift->origin.height + lift->destination.height) / 2,
-      .travel = lift->destination.height - lift->origin.height,
+      .travel = std::abs(lift->destination.height - lift->origin.height),
       .frequency = per_minute};
-  lift->acceptable = ergonomics::AcceptableLift(task, sex);
+  lift->acceptable = lift->lowered ? ergonomics::AcceptableLower(task, work.sex)
+                                   : ergonomics::AcceptableLift(task, work.sex);
   lift->share_that_accepts =
       lift->acceptable.ShareThatAccepts(std::max(0.0, lift->vertical_force) / kStandardGravity);
+}
+
+using Middles = std::vector<std::optional<Vector3>>;
+
+Middles MiddlesOf(std::span<const PersonSample> samples, const person::Stance& stance) {
+  Middles middles;
+  middles.reserve(samples.size());
+  for (const PersonSample& sample : samples) middles.push_back(MiddleOf(sample, stance));
+  return middles;
+}
+
+// Appends the lifts, or the lowerings, which are rises of the mirrored heights.
+void AppendLifts(const Middles& middles, std::span<const PersonSample> samples, bool lowered,
+                 const LiftingWork& work, std::vector<Lift>* lifts) {
+  Middles heights = middles;
+  if (lowered)
+    for (auto& middle : heights)
+      if (middle) middle->z() = -middle->z();
+  const std::vector<Rise> rises = RisesOf(heights, samples);
+  const double minutes = static_cast<double>(samples.size()) / kSampleRate / 60;
+  for (const Rise& rise : rises) {
+    Lift lift;
+    lift.lowered = lowered;
+    const auto& hands = samples[rise.from].body.hands;
+    lift.one_hand = !hands[0].present || !hands[1].present;
+    lift.begin = samples[rise.from].body.time;
+    lift.end = samples[rise.to].body.time;
+    lift.origin = PlaceOf(*middles[rise.from]);
+    lift.destination = PlaceOf(*middles[rise.to]);
+    lift.vertical_force = MeanVerticalForce(samples.subspan(rise.from, rise.to - rise.from + 1));
+    Judge(work, static_cast<double>(rises.size()) / minutes, &lift);
+    lifts->push_back(lift);
+  }
 }
 
 }  // namespace
 
 std::vector<Lift> LiftsOf(std::span<const PersonSample> samples, const person::Stance& stance,
-                          double object_mass, Sex sex) {
-  std::vector<std::optional<Vector3>> middle;
-  middle.reserve(samples.size());
-  for (const PersonSample& sample : samples) middle.push_back(MiddleOf(sample, stance));
-  const std::vector<Rise> rises = RisesOf(middle, samples);
-  const double minutes = static_cast<double>(samples.size()) / kSampleRate / 60;
+                          const LiftingWork& work) {
+  const Middles middles = MiddlesOf(samples, stance);
   std::vector<Lift> lifts;
-  for (const Rise& rise : rises) {
-    Lift lift;
-    const auto& hands = samples[rise.from].body.hands;
-    lift.one_hand = !hands[0].present || !hands[1].present;
-    lift.begin = samples[rise.from].body.time;
-    lift.end = samples[rise.to].body.time;
-    lift.origin = PlaceOf(*middle[rise.from]);
-    lift.destination = PlaceOf(*middle[rise.to]);
-    lift.vertical_force = MeanVerticalForce(samples.subspan(rise.from, rise.to - rise.from + 1));
-    Assess(object_mass, static_cast<double>(rises.size()) / minutes, sex, &lift);
-    lifts.push_back(lift);
-  }
+  for (const bool lowered : {false, true}) AppendLifts(middles, samples, lowered, work, &lifts);
+  std::ranges::stable_sort(lifts, {}, &Lift::begin);
   return lifts;
+}
+
+LiftingJob JobOf(std::span<const Lift> lifts, double minutes) {
+  std::vector<ergonomics::LiftTask> carried, whole;
+  for (const Lift& lift : lifts) {
+    if (lift.lowered || lift.one_hand) continue;
+    ergonomics::LiftTask task = lift.task;
+    task.frequency = 1 / minutes;
+    whole.push_back(task);
+    task.mean_load = task.max_load = std::max(0.0, lift.vertical_force / kStandardGravity);
+    carried.push_back(task);
+  }
+  return {whole.size(), minutes, ergonomics::CompositeLiftingIndex(carried),
+          ergonomics::CompositeLiftingIndex(whole)};
+}
+
+std::size_t ExertionsOf(std::span<const PersonSample> samples, std::size_t hand,
+                        std::span<const Lift> lifts) {
+  std::size_t exertions = 0;
+  for (std::size_t begin = 0, end = 0; begin < samples.size(); begin = end + 1) {
+    end = begin;
+    while (end < samples.size() && samples[end].body.hands[hand].present) ++end;
+    if (end == begin) continue;
+    const double from = samples[begin].body.time, to = samples[end - 1].body.time;
+    const auto moves = std::ranges::count_if(
+        lifts, [&](const Lift& lift) { return lift.begin >= from && lift.begin <= to; });
+    exertions += std::max<std::size_t>(1, static_cast<std::size_t>(moves));
+  }
+  return exertions;
+}
+
+double HorizontalTravel(std::span<const PersonSample> samples, const person::Stance& stance) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  Vector3 low = Vector3::Constant(kFar), high = Vector3::Constant(-kFar);
+  for (const auto& middle : MiddlesOf(samples, stance)) {
+    if (!middle) continue;
+    low = low.cwiseMin(*middle);
+    high = high.cwiseMax(*middle);
+  }
+  return low.x() > high.x() ? 0 : std::hypot(high.x() - low.x(), high.y() - low.y());
 }
 
 void AddDamageOfLifts(std::span<const PersonSample> samples, std::span<const double> moment,

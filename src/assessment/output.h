@@ -46,6 +46,7 @@ std::string OriginWords();
 std::string RangeWords(const DamageResult& damage);
 // These functions return one sentence for each lift, damage and fatigue result.
 std::string Sentence(const Lift& lift);
+std::string Sentence(const LiftingJob& job);
 std::string Sentence(const DamageResult& damage);
 std::string Sentence(const FatigueResult& fatigue);
 // Returns a sentence such as "The body reaches the handles 98 % of the time ...".

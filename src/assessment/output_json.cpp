@@ -47,23 +47,33 @@ Json ToJson(const ergonomics::HandPlace& place) {
 
 Json OptionalNumber(const std::optional<double>& x) { return x ? Json(*x) : Json(nullptr); }
 
+Json ToJson(const LiftingJob& job) {
+  return {{"origin", Name(Origin::kStandard)},
+          {"lifts", job.lifts},
+          {"duration_min", job.minutes},
+          {"adapted_composite_lifting_index", NumberOrNull(job.carried)},
+          {"unassisted_composite_lifting_index", NumberOrNull(job.unassisted)}};
+}
+
 Json ToJson(const Lift& lift) {
-  return {{"origin_of_number", Name(Origin::kStandard)},
-          {"begin_s", lift.begin},
-          {"end_s", lift.end},
-          {"one_hand", lift.one_hand},
-          {"origin", ToJson(lift.origin)},
-          {"destination", ToJson(lift.destination)},
-          {"vertical_force_n", lift.vertical_force},
-          {"adapted_lifting_index",
-           lift.one_hand ? Json(nullptr) : NumberOrNull(lift.niosh.carried.index)},
-          {"unassisted_lifting_index",
-           lift.one_hand ? Json(nullptr) : NumberOrNull(lift.niosh.unassisted.index)},
-          {"share_that_accepts", lift.one_hand ? Json(nullptr) : Json(lift.share_that_accepts)},
-          {"outside_lm_mmh", lift.acceptable.outside},
-          {"lifft_moment_nm", OptionalNumber(lift.moment)},
-          {"lifft_share_of_reference_day", OptionalNumber(lift.day_share)},
-          {"outside_lifft", lift.outside_lifft()}};
+  const bool no_index = lift.one_hand || lift.lowered;
+  return {
+      {"origin_of_number", Name(Origin::kStandard)},
+      {"begin_s", lift.begin},
+      {"end_s", lift.end},
+      {"one_hand", lift.one_hand},
+      {"lowered", lift.lowered},
+      {"origin", ToJson(lift.origin)},
+      {"destination", ToJson(lift.destination)},
+      {"vertical_force_n", lift.vertical_force},
+      {"adapted_lifting_index", no_index ? Json(nullptr) : NumberOrNull(lift.niosh.carried.index)},
+      {"unassisted_lifting_index",
+       no_index ? Json(nullptr) : NumberOrNull(lift.niosh.unassisted.index)},
+      {"share_that_accepts", lift.one_hand ? Json(nullptr) : Json(lift.share_that_accepts)},
+      {"outside_lm_mmh", lift.acceptable.outside},
+      {"lifft_moment_nm", OptionalNumber(lift.moment)},
+      {"lifft_share_of_reference_day", OptionalNumber(lift.day_share)},
+      {"outside_lifft", lift.outside_lifft()}};
 }
 
 Json ToJson(const DamageResult& d) {
@@ -239,6 +249,7 @@ std::string AssessmentJson(const Assessment& a, const Comparison* comparison) {
   for (const WorksheetResult& w : a.worksheets) json["worksheets"][w.kind->name] = ToJson(w);
   json["limits"] = ListOf(a.limits);
   json["lifts"] = ListOf(a.lifts);
+  json["lifting_job"] = a.job ? ToJson(*a.job) : Json(nullptr);
   json["damage"] = ListOf(a.damage);
   json["fatigue"] = ListOf(a.fatigue);
   json["safety"] = a.safety ? SafetyJson(*a.safety) : Json(nullptr);
@@ -287,7 +298,9 @@ std::string AssessmentSchema() {
        {"quantities", schema::Object(quantities, "values over time")},
        {"worksheets", schema::Object(worksheets, "scores of observational worksheets")},
        {"limits", ListSchema("limits of the files that were given", ToJson(LimitResult{}))},
-       {"lifts", ListSchema("lifts of the run", ToJson(Lift{}))},
+       {"lifts", ListSchema("lifts and lowerings of the run", ToJson(Lift{}))},
+       {"lifting_job",
+        schema::ValueOrNull("object", "several lifts as one job: composite lifting indices")},
        {"damage", ListSchema("cumulative damage", ToJson(DamageResult{}))},
        {"fatigue", ListSchema("fatigue of joints", ToJson(FatigueResult{}))},
        {"safety", SafetySchema()},

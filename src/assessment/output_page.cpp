@@ -234,8 +234,9 @@ void AddLimits(const Assessment& a, Outline* outline) {
 
 void AddCosts(const Assessment& a, Outline* outline) {
   ReportPage& page = outline->page();
-  if (!a.lifts.empty()) outline->Begin("lifts", "Lifts (standard)");
+  if (!a.lifts.empty()) outline->Begin("lifts", "Lifts and lowerings (standard)");
   for (const Lift& lift : a.lifts) page.Paragraph(Sentence(lift));
+  if (a.job) page.Paragraph(Sentence(*a.job));
   outline->Begin("damage", "Cumulative damage (standard)");
   page.Html(DamageTable(a));
   page.Html(

@@ -6,6 +6,7 @@
 #include "assessment/safety/output.h"
 #include "core/format.h"
 #include "core/text.h"
+#include "core/text_table.h"
 #include "core/units.h"
 
 namespace predictor::assessment {
@@ -28,25 +29,20 @@ void AppendQuantities(const Assessment& a, std::string* text) {
   }
 }
 
-// Returns the number of characters of a UTF-8 text.
-std::size_t WidthOf(const std::string& text) {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
 void AppendJoints(const Assessment& a, std::string* text) {
   const auto rows = JointTable(a);
   if (rows.size() < 2) return;
   AppendLine(text, "\nJoints of the arms (modelled)");
   std::vector<std::size_t> widths(rows[0].size(), 0);
   for (const auto& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], WidthOf(row[i]));
+    for (std::size_t i = 0; i < row.size(); ++i)
+      widths[i] = std::max(widths[i], CharactersIn(row[i]));
   for (const auto& row : rows) {
     std::string line;
     for (std::size_t i = 0; i < row.size(); ++i) {
-      line += "  " + row[i];
-      if (i + 1 < row.size()) line.append(widths[i] - WidthOf(row[i]), ' ');
+      line += "  " + LeftAligned(row[i], widths[i]);
     }
+    line.erase(line.find_last_not_of(' ') + 1);
     AppendLine(text, "%s", line.c_str());
   }
   AppendLine(text, "%s", JointTableWords().c_str());
@@ -136,22 +132,33 @@ std::string RangeWords(const DamageResult& damage) {
 }
 
 std::string Sentence(const Lift& lift) {
+  const char* const move = lift.lowered ? "lowered" : "lifted";
+  const std::string where =
+      Formatted("%.1f to %.1f s, %s from %.2f to %.2f m above the ground", lift.begin, lift.end,
+                move, lift.origin.height, lift.destination.height);
   if (lift.one_hand)
-    return Formatted(
-               "%.1f to %.1f s, from %.2f to %.2f m above the ground, with one hand: the lifting "
-               "equations apply only to two hands.",
-               lift.begin, lift.end, lift.origin.height, lift.destination.height) +
+    return where + ", with one hand: the lifting equations apply only to two hands." +
            DamageWords(lift);
+  std::string text =
+      where + Formatted(": the hands carry %.1f kg. ", lift.vertical_force / kStandardGravity);
+  if (!lift.lowered)
+    Append(&text, "Lifting index %s (%s), %s without the cobot. ",
+           Index(lift.niosh.carried.index).c_str(), ergonomics::AssistedLift::kCarriedLabel,
+           Index(lift.niosh.unassisted.index).c_str());
+  Append(&text,
+         "%s this load for a day is acceptable to %.0f %% of people of the operator's sex "
+         "(LM-MMH%s).",
+         lift.lowered ? "Lowering" : "Lifting", 100 * lift.share_that_accepts,
+         lift.acceptable.outside ? ", limited to its range" : "");
+  return text + DamageWords(lift);
+}
+
+std::string Sentence(const LiftingJob& job) {
   return Formatted(
-             "%.1f to %.1f s, from %.2f to %.2f m above the ground: the hands carry %.1f kg. "
-             "Lifting index %s (%s), %s without the cobot. Lifting this load for a day is "
-             "acceptable to %.0f %% of people of the operator's sex (LM-MMH%s).",
-             lift.begin, lift.end, lift.origin.height, lift.destination.height,
-             lift.vertical_force / kStandardGravity, Index(lift.niosh.carried.index).c_str(),
-             ergonomics::AssistedLift::kCarriedLabel, Index(lift.niosh.unassisted.index).c_str(),
-             100 * lift.share_that_accepts,
-             lift.acceptable.outside ? ", limited to its range" : "") +
-         DamageWords(lift);
+      "%zu lifts in %.2f min as one job with several tasks: composite lifting index %s (%s), %s "
+      "without the cobot.",
+      job.lifts, job.minutes, Index(job.carried).c_str(), ergonomics::AssistedLift::kCarriedLabel,
+      Index(job.unassisted).c_str());
 }
 
 std::string Sentence(const DamageResult& damage) {
@@ -194,7 +201,8 @@ std::string AssessmentText(const Assessment& a) {
   AppendJoints(a, &text);
   AppendWorksheets(a, &text);
   AppendSentences("Limits of your files (standard)", a.limits, &text);
-  AppendSentences("Lifts (standard)", a.lifts, &text);
+  AppendSentences("Lifts and lowerings (standard)", a.lifts, &text);
+  if (a.job) AppendLine(&text, "  %s", Sentence(*a.job).c_str());
   AppendSentences("Cumulative damage (standard)", a.damage, &text);
   AppendSentences("Fatigue, 3CC-r (modelled)", a.fatigue, &text);
   if (a.safety) text += SafetyText(*a.safety);

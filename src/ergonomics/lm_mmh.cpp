@@ -12,7 +12,6 @@ namespace {
 constexpr double kMinStudiedFrequency = 1.0 / 480;  // [1/min] once in eight hours
 constexpr double kMaxStudiedFrequency = 20;         // [1/min]
 constexpr double kMinStudiedTravel = 0.25;          // [m]
-constexpr double kMinStudiedDistance = 2.1;         // [m]
 
 // A factor of the form constant + x / linear + x² / square. A divisor of 0 means that the term is
 // absent.
@@ -88,7 +87,7 @@ Acceptable Horizontal(const HorizontalHandling& task, const HorizontalEquation& 
                       double unit) {
   Acceptable a;
   a.variation = equation.variation;
-  const double d = Limited(task.distance, kMinStudiedDistance, INFINITY, &a.outside);
+  const double d = Limited(task.distance, kShortestHorizontal, INFINITY, &a.outside);
   a.mean = equation.reference * unit * equation.height.At(task.hand_height) *
            equation.distance.At(equation.of_log_distance ? std::log(d) : d) *
            equation.rate.At(LogRate(task.frequency, &a.outside));

@@ -39,9 +39,10 @@ struct VerticalHandling {
 Acceptable AcceptableLift(const VerticalHandling& task, Sex sex);
 Acceptable AcceptableLower(const VerticalHandling& task, Sex sex);
 
+inline constexpr double kShortestHorizontal = 2.1;  // [m] shorter distances were not studied
 struct HorizontalHandling {
   double hand_height = 0;  // [m]
-  double distance = 0;     // [m] at least 2.1: shorter distances were not studied
+  double distance = 0;     // [m] at least kShortestHorizontal
   double frequency = 0;    // [1/min] 1/480 … 20
 };
 enum class ForcePhase {

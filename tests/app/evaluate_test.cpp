@@ -47,6 +47,26 @@ TEST_F(Evaluate, WritesTextPageJsonAndCsv) {
   EXPECT_NE(again.errors().find("--force"), std::string::npos) << again.errors();
 }
 
+TEST_F(Evaluate, UsesTheStatedWork) {
+  const std::string recording = Record("box_9kg");
+  Child child({"evaluate", recording, "--no-intervals", "--duration", "8h", "--coupling", "poor",
+               "--grip-effort", "4", "--json", "-"});
+  ASSERT_EQ(child.Wait(), 0) << child.errors();
+  const auto json = nlohmann::json::parse(child.output());
+  std::size_t hands = 0;
+  for (const auto& damage : json["damage"]) hands += damage["tool"] == "DUET" ? 1 : 0;
+  EXPECT_EQ(hands, 2u);
+  const std::string assumptions = json["assumptions"].dump();
+  EXPECT_NE(assumptions.find("eight hours"), std::string::npos) << assumptions;
+  EXPECT_NE(assumptions.find("poor handles"), std::string::npos) << assumptions;
+  for (const std::vector<std::string>& wrong :
+       {std::vector<std::string>{"--grip-effort", "11"}, {"--duration", "3h"}}) {
+    Child refused({"evaluate", recording, wrong[0], wrong[1], "--force"});
+    EXPECT_EQ(refused.Wait(), 2) << wrong[0];
+    EXPECT_NE(refused.errors().find(wrong[0]), std::string::npos) << refused.errors();
+  }
+}
+
 // Returns the text of the page that `report` makes of these recordings.
 std::string ReportOf(std::vector<std::string> arguments, const fs::path& page) {
   arguments.insert(arguments.begin(), "report");
