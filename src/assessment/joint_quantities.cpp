@@ -14,7 +14,7 @@ using person::ArmJoint;
 
 constexpr Unit kTorqueUnit = {"N·m", "N·m", 1, 1};
 constexpr Unit kStiffnessUnit = {"N·m/rad", "N·m/rad", 1, 0};
-constexpr Unit kShareUnit = {"", "%", 100, 0};
+constexpr Unit kShareUnit = {"", "%", 100, 1};
 
 // Names of a joint in paths and tables, in the order of person::ArmJoint.
 struct JointNames {

@@ -131,6 +131,17 @@ tracks::ClockOffset Estimate(const tracks::BodyTrack& track,
   return *best;  // set, because a mapping with an unknown clock must map a hand
 }
 
+// Warns about measurements that are almost never near the time of the run.
+void AddRareWarnings(MeasuredBody* body) {
+  constexpr double kRare = 0.01;  // share of the time (design choice)
+  for (const MeasuredPart& part : body->parts)
+    if (part.share < kRare)
+      body->warnings.push_back(Formatted(
+          "%s: The %s is measured for only %.1f %% of the time, so it hardly changes the results. "
+          "Check the rate and the clock of the measurement.",
+          Printable(part.source).c_str(), part.what.c_str(), 100 * part.share));
+}
+
 UsedTrack Relate(const tracks::BodyTrack& track, double start_unix,
                  const std::vector<PersonSample>& samples) {
   UsedTrack used{
@@ -222,6 +233,7 @@ MeasuredBody AddTracks(std::span<const tracks::BodyTrack> tracks, const PersonSe
     (track.of_the_run ? AddTrackOfTheRun : AddTrack)(track, setup, start_unix, samples, &body);
   }
   body.warnings.insert(body.warnings.end(), body.emg.warnings.begin(), body.emg.warnings.end());
+  AddRareWarnings(&body);
   return body;
 }
 

@@ -95,6 +95,22 @@ TEST(MeasuredBody, NarrowsTheIntervals) {
   EXPECT_LT(*head.measured.parts[0].misfit, 0.005);
 }
 
+// Two rows that are far apart measure nothing between them.
+TEST(MeasuredBody, WarnsAboutAMeasurementThatIsAlmostNeverThere) {
+  const auto warns = [](const Assessment& a) {
+    return std::ranges::any_of(a.warnings, [](const std::string& warning) {
+      return warning.find("is measured for only") != std::string::npos;
+    });
+  };
+  const Truth truth = TruthOf(MadeRun());
+  tracks::BodyTrack rare = TrackOf(truth, true, false);
+  EXPECT_FALSE(warns(JudgeWith({rare})));
+  rare.head->times = {-0.4, kDuration + 0.4};
+  rare.head->p.resize(2);
+  rare.head->q.resize(2);
+  EXPECT_TRUE(warns(JudgeWith({rare})));
+}
+
 // Without a measured rotation, the model bends the neck comfortably.
 TEST(MeasuredBody, UsesAPositionWithoutRotation) {
   Truth truth = TruthOf(MadeRun());

@@ -301,6 +301,21 @@ TEST(LettingGo, ContactLimitsTheSpeedByForceAndMasses) {
   EXPECT_NEAR(contact.clamped[0].share, 70.0 / 140, 1e-12);
 }
 
+// Only what touches the object or the cobot can clamp.
+TEST(LettingGo, ClampingNamesTheFixtures) {
+  Scenario scenario = PersonScenario();
+  scenario.environment.floor = false;
+  scenario.environment.table.reset();
+  EXPECT_TRUE(ClampingFixtures(scenario).empty());
+  scenario.environment.table.emplace();
+  FixtureSpec wall{.touches = {"object"}, .name = "wall"};
+  FixtureSpec unnamed{.shape = FixtureShape::kSphere, .touches = {"cobot"}};
+  FixtureSpec drawn{.touches = {}, .name = "drawn"};
+  scenario.environment.fixtures = {wall, unnamed, drawn};
+  EXPECT_EQ(ClampingFixtures(scenario),
+            (std::vector<std::string>{"the table", "wall", "a sphere"}));
+}
+
 // ---- the whole assessment ----------------------------------------------------------------------
 
 TEST(Safety, StatesWhatTheRigCannotRender) {
@@ -324,6 +339,26 @@ TEST(Safety, StatesWhatTheRigCannotRender) {
   };
   EXPECT_TRUE(gap("fall of the object"));
   EXPECT_TRUE(gap("unintended contact"));
+  EXPECT_TRUE(gap("force of a hand above 30.00 N"));
+  EXPECT_TRUE(std::ranges::none_of(safety.not_evaluable, [](const NotEvaluable& n) {
+    return n.what.starts_with("torque of a hand above");
+  }));
+  EXPECT_NE(SafetyText(safety).find("no event of the scenario had begun"), std::string::npos);
+}
+
+// The event that had begun last at the largest value explains why the limit was reached.
+TEST(Safety, ALimitOfTheRigNamesTheEvent) {
+  Scenario scenario = PersonScenario();
+  for (const char* event : {"jolt", "power_loss"}) scenario.events.push_back({.event = event});
+  const auto run = CollectSafety(scenario, 100, [](std::uint64_t t) {
+    TickRecord record = SceneRecord(t, {0.3, 0, 0.15}, 0.1);
+    record.latest_event = t >= 90 ? 2 : t >= 60 ? 1 : 0;
+    record.hands[1].wrench[2] = t == 70 ? 31 : t == 95 ? 30.5 : 12;
+    return record;
+  });
+  const SafetyAssessment safety = JudgeSafety(scenario, MadeUpSetup(scenario), run, {});
+  EXPECT_EQ(safety.rig[0].event, "jolt");
+  EXPECT_NE(SafetyText(safety).find("after the event jolt had begun"), std::string::npos);
 }
 
 TEST(Safety, OfARunWithoutSimulatedTimeIsRefused) {

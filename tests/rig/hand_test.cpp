@@ -32,6 +32,32 @@ TEST(Hand, StaticStiffnessIsImpedancePlusReflexPlusSight) {
   EXPECT_LT((person.Torque() + rotation * turn).norm(), 1e-10);
 }
 
+// A tired muscle needs more activation for the same force, so tremor and noise grow as 1/capacity.
+TEST(Hand, TremorAndNoiseGrowWithFatigue) {
+  HandSpec spec = QuietScenario(1).operator_.hand;
+  spec.tremor_force = 0.8;
+  spec.force_noise_floor = 0.5;
+  const auto forces = [&](double capacity) {
+    HandModel hand(spec, HandInertia::kInWrench, 5, "left");
+    hand.Reset(0.001);
+    ArmAbility arm;
+    arm.capacity = capacity;
+    std::vector<Vector3> series;
+    for (int k = 0; k < 10000; ++k)
+      series.emplace_back(hand.Intend({.hold = true}, {}, &arm).head<3>());
+    return series;
+  };
+  const auto rested = forces(1), tired = forces(0.4);
+  double sum = 0;
+  for (std::size_t k = 0; k < rested.size(); ++k) {
+    ASSERT_NEAR((tired[k] - rested[k] / 0.4).norm(), 0, 1e-12) << k;
+    sum += rested[k].squaredNorm();
+  }
+  // The comparison means something only if there is tremor.
+  const double expected = std::hypot(spec.tremor_force, spec.force_noise_floor);
+  EXPECT_GT(std::sqrt(sum / static_cast<double>(rested.size())), 0.5 * expected);
+}
+
 TEST(Hand, ReflexAndSightActAfterTheirDelaysToTheTick) {
   const Scenario scenario = Gripping(QuietScenario(1));
   const HandSpec& hand = scenario.operator_.hand;

@@ -97,6 +97,16 @@ Separation SeparationOf(const SceneMotion& motion, const PersonSetup& setup) {
   return worst;
 }
 
+std::vector<std::string> ClampingFixtures(const Scenario& scenario) {
+  std::vector<std::string> names;
+  if (scenario.environment.floor) names.emplace_back("the floor");
+  if (scenario.environment.table) names.emplace_back("the table");
+  for (const FixtureSpec& fixture : scenario.environment.fixtures)
+    if (fixture.Touches("object") || fixture.Touches("cobot"))
+      names.push_back(fixture.name.empty() ? "a " + NameOf(fixture.shape) : fixture.name);
+  return names;
+}
+
 UnintendedContact ContactOf(const SceneMotion& motion, const SceneMasses& masses,
                             const ergonomics::ContactLimits& limits, const Scenario& scenario) {
   using ergonomics::ContactKind;
@@ -105,6 +115,7 @@ UnintendedContact ContactOf(const SceneMotion& motion, const SceneMasses& masses
   contact.robot_mass = ergonomics::EffectiveRobotMass(masses.cobot, masses.object);
   contact.speed = motion.fastest().speed();
   contact.time = motion.fastest().time;
+  contact.fixtures = ClampingFixtures(scenario);
   // The cobot clamps with at most the bound on the controller's force, or with at most the
   // estimated force at which the cobot stops itself.
   for (const auto& bound : {scenario.cobot.safety.force, scenario.cobot.safety.force_cap})

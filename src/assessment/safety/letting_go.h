@@ -106,6 +106,9 @@ struct UnintendedContact {
   // scenario sets no bound.
   std::optional<double> clamping_force;  // [N]
   std::vector<RegionCheck> clamped;      // `share`: clamping force / quasi-static limit
+  // The bodies of the surroundings against which the object or the cobot can clamp: "the floor",
+  // "the table", and the names or shapes of the fixtures.
+  std::vector<std::string> fixtures;
 };
 
 Drop DropOf(const SceneMotion& motion, const SceneMasses& masses, const PersonSetup& setup,
@@ -113,6 +116,7 @@ Drop DropOf(const SceneMotion& motion, const SceneMasses& masses, const PersonSe
 // Returns the separation for the release with the largest shortfall of the distance. If there was
 // no release, returns the separation at the moment of the highest speed.
 Separation SeparationOf(const SceneMotion& motion, const PersonSetup& setup);
+std::vector<std::string> ClampingFixtures(const Scenario& scenario);
 UnintendedContact ContactOf(const SceneMotion& motion, const SceneMasses& masses,
                             const ergonomics::ContactLimits& limits, const Scenario& scenario);
 

@@ -91,6 +91,7 @@ Json ToJson(const UnintendedContact& contact) {
       {"speed_m_per_s", contact.speed},
       {"transient", Json::array()},
       {"clamping_force_n", contact.clamping_force ? Json(*contact.clamping_force) : Json(nullptr)},
+      {"fixtures", contact.fixtures},
       {"clamped", Json::array()}};
   for (const RegionCheck& check : contact.regions) json["transient"].push_back(ToJson(check));
   for (const RegionCheck& check : contact.clamped) json["clamped"].push_back(ToJson(check));
@@ -140,6 +141,7 @@ std::string MeaningOf(const std::string& key) {
       {"effective_mass_kg", "effective mass of cobot and object [kg]"},
       {"transient", "each region, if it is hit and can recoil"},
       {"clamping_force_n", "bound that the scenario sets on the cobot's force; null: no bound [N]"},
+      {"fixtures", "what the object or the cobot can clamp a part of the body against"},
       {"clamped", "each region, if it is clamped"},
       {"what", "subject of the limit or the gap"},
       {"why", "why it could not be judged"},

@@ -2,22 +2,31 @@
 
 #include <algorithm>
 
+#include "assessment/output.h"
 #include "core/error.h"
+#include "core/text.h"
 
 namespace predictor::assessment {
 namespace {
 
+// Returns the hazard that had begun last when the value was largest, or "".
+std::string EventOf(const Scenario& scenario, const SafetyCollector::LargestValue& largest) {
+  const std::size_t number = largest.event;
+  return number > 0 && number <= scenario.events.size() ? scenario.events[number - 1].event : "";
+}
+
 std::vector<RigLimit> RigLimits(const Scenario& scenario, const SafetyCollector::Largest& largest) {
   constexpr Unit kRotationSpeed = {"rad/s", "rad/s", 1, 2};
   const SafetySpec& safety = scenario.safety;
-  std::vector<RigLimit> limits = {
-      {"force of a hand", units::kNewton, safety.force, largest.force},
-      {"torque of a hand", units::kNewtonMetre, safety.torque, largest.torque}};
+  std::vector<RigLimit> limits = {{"force of a hand", units::kNewton, safety.force,
+                                   largest.force.value, EventOf(scenario, largest.force)},
+                                  {"torque of a hand", units::kNewtonMetre, safety.torque,
+                                   largest.torque.value, EventOf(scenario, largest.torque)}};
   if (scenario.mode != Mode::kEmulate) return limits;
-  limits.push_back(
-      {"speed of a virtual handle", units::kMetrePerSecond, safety.handle_speed, largest.speed});
+  limits.push_back({"speed of a virtual handle", units::kMetrePerSecond, safety.handle_speed,
+                    largest.speed.value, EventOf(scenario, largest.speed)});
   limits.push_back({"rotation of a virtual handle", kRotationSpeed, safety.handle_rotation_speed,
-                    largest.rotation_speed});
+                    largest.rotation_speed.value, EventOf(scenario, largest.rotation_speed)});
   return limits;
 }
 
@@ -41,6 +50,16 @@ void AddGaps(const Scenario& scenario, const SafetyOptions& options, SafetyAsses
   }
   add("distance between the person's body and the links of the cobot",
       "the links have no shape in this simulation");
+  add("distance of the cobot from its joint limits and from singular postures",
+      "this evaluation does not load the kinematics of the cobot");
+  for (const RigLimit& limit : safety->rig)
+    if (limit.censored())
+      safety->not_evaluable.push_back(
+          {limit.what + " above " + NumberText(limit.unit, limit.limit) + " " + limit.unit.shown,
+           limit.event.empty()
+               ? "the run reached this limit of the rig, and no event of the scenario had begun"
+               : "the run reached this limit of the rig after the event " + Printable(limit.event) +
+                     " had begun"});
   if (scenario.operator_.type == "person")
     add("moments at which the person let go", "real arms cannot sense whether a hand is there");
   if (scenario.mode == Mode::kEmulate)
@@ -60,8 +79,9 @@ void SafetyCollector::Add(const TickRecord& record) {
   if (!record.ran) return;
   for (const HandRecord& hand : record.hands) {
     if (!hand.present) continue;
-    const auto raise = [](double* most, const std::array<double, 6>& v, std::size_t k) {
-      *most = std::max(*most, Vector3(v[k], v[k + 1], v[k + 2]).norm());
+    const auto raise = [&](LargestValue* most, const std::array<double, 6>& v, std::size_t k) {
+      const double value = Vector3(v[k], v[k + 1], v[k + 2]).norm();
+      if (value > most->value) *most = {value, record.latest_event};
     };
     raise(&largest_.force, hand.wrench, 0);
     raise(&largest_.torque, hand.wrench, 3);

@@ -2,6 +2,7 @@
 // loaded the joints, what could happen after letting go, and what this rig cannot show.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,8 +26,12 @@ class SafetyCollector {
 
   // The largest values of both hands in RUN: the force [N], the torque [N·m], and the speeds of the
   // virtual handles [m/s], [rad/s].
+  struct LargestValue {
+    double value = 0;
+    std::uint8_t event = 0;  // TickRecord::latest_event at this time
+  };
   struct Largest {
-    double force = 0, torque = 0, speed = 0, rotation_speed = 0;
+    LargestValue force, torque, speed, rotation_speed;
   };
   const Largest& largest() const { return largest_; }
 
@@ -43,6 +48,7 @@ struct RigLimit {
   std::string what;  // "force of a hand"
   Unit unit;
   double limit = 0, reached = 0;  // SI
+  std::string event;  // hazard that had begun last when the value was largest; empty: none
   // The value without this limit may be larger, because the emulator stopped the run or slowed the
   // handles down.
   bool censored() const { return reached >= limit; }

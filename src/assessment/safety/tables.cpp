@@ -6,6 +6,7 @@
 #include "assessment/output.h"
 #include "assessment/safety/output.h"
 #include "core/format.h"
+#include "core/text.h"
 #include "core/words.h"
 
 namespace predictor::assessment {
@@ -126,6 +127,13 @@ SafetyTable LettingGoTable(const SafetyAssessment& safety) {
   return table;
 }
 
+std::string FixtureWords(const std::vector<std::string>& fixtures) {
+  if (fixtures.empty())
+    return "The scenario contains no floor, table or fixture, so these shares apply only if the "
+           "real workplace contains one.";
+  return "The object or the cobot can clamp it against: " + Printable(Join(fixtures)) + ".";
+}
+
 SafetyTable ContactTable(const UnintendedContact& contact) {
   SafetyTable table{.title = "Unintended contact", .origin = "standard"};
   table.rows.push_back({"", "fastest allowed [m/s]", "share reached"});
@@ -145,9 +153,9 @@ SafetyTable ContactTable(const UnintendedContact& contact) {
       contact.speed, contact.time, contact.robot_mass, contact.edition.c_str()));
   if (contact.clamping_force)
     table.notes.push_back(
-        Formatted("A body part between object and fixture can be clamped with %.0f N, which is the "
-                  "scenario's bound on the cobot's force.",
-                  *contact.clamping_force));
+        Formatted("A body part can be clamped with %.0f N, which is the scenario's bound on the "
+                  "cobot's force. %s",
+                  *contact.clamping_force, FixtureWords(contact.fixtures).c_str()));
   table.notes.emplace_back(
       "These limits do not apply to the forces at the handles. The numbers do not prove "
       "conformity, which requires measurements of the real application.");
