@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <span>
 #include <string>
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "emulator/emulator.h"
 #include "emulator/run_loop.h"
 #include "fakes/bench.h"
@@ -104,6 +106,58 @@ TEST_F(VerifyTest, ARunWithContactIsTheSameAgain) {
   const double top = table.xyz.z() + table.size.z() / 2;  // [m]
   EXPECT_NEAR(lowest, top, 2e-4);
   EXPECT_GT(highest, top + 0.02);
+}
+
+// A cobot whose base has a deck. The hand slides along z, 0.1 m above the middle of the box that it
+// carries.
+constexpr const char* kCobotWithDeck = R"(<robot name="deck">
+<link name="base"><collision><origin xyz="FLANGE_X FLANGE_Y DECK_Z"/><geometry>
+<box size="1 1 0.1"/></geometry></collision></link>
+<joint name="lift" type="prismatic"><parent link="base"/><child link="hand"/>
+<origin xyz="FLANGE_X FLANGE_Y FLANGE_Z"/><axis xyz="0 0 1"/>
+<limit lower="-1" upper="1" velocity="5" effort="500"/></joint>
+<link name="hand"><inertial><mass value="5"/>
+<inertia ixx="0.05" iyy="0.05" izz="0.05" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision><geometry><box size="0.05 0.05 0.05"/></geometry></collision></link></robot>)";
+
+// The gripper opens, and the box falls onto the deck.
+TEST_F(VerifyTest, ARunInWhichTheObjectTouchesTheCobotIsTheSameAgain) {
+  const Vector3 middle = World(scenario_).state().object.X_W.p;  // where the arms reach it
+  constexpr double kFall = 0.03;                                 // without the sag [m]
+  const double top = middle.z() - 0.1 - kFall;
+  std::string urdf = kCobotWithDeck;
+  const auto set = [&urdf](const std::string& word, double value) {
+    for (std::size_t at; (at = urdf.find(word)) != std::string::npos;)
+      urdf.replace(at, word.size(), std::to_string(value));
+  };
+  set("FLANGE_X", middle.x()), set("FLANGE_Y", middle.y()), set("FLANGE_Z", middle.z() + 0.1);
+  set("DECK_Z", top - 0.05);
+  std::ofstream(folder_ / "deck.urdf") << urdf;
+  std::ofstream(folder_ / "deck.yaml")
+      << ReadWholeFile(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml");
+  scenario_ = LoadScenario(
+      folder_ / "deck.yaml",
+      {"duration=2", "cobot.model=deck.urdf", "cobot.remove_links=[]", "cobot.end_effector=hand",
+       "cobot.posture=[0 m]", "cobot.touches=[object, cobot]",
+       "cobot.controller={type: joint_impedance, joint_stiffness: 5000}",
+       "object.attachment={joint: fixed, on_end_effector: {xyz: [0, 0, -0.1]}}",
+       "operator.script=[]"});
+  scenario_.object.model.clear();
+  scenario_.object.primitive = PrimitiveSpec{.size = {0.26, 0.38, 0.2}, .mass = 9};
+  scenario_.events.emplace_back();
+  scenario_.events[0].event = "release_object";
+  scenario_.events[0].trigger.after = 0.5;
+  double highest = -HUGE_VAL, last = 0;
+  const Verification result = VerifyFile(Record([&](TickRecord* tick) {
+    last = LowestCorner(tick->object.pose);
+    highest = std::max(highest, last);
+    return true;
+  }));
+  EXPECT_GT(result.ticks, 2000U);
+  EXPECT_FALSE(result.departure);
+  EXPECT_EQ(result.missing + result.skipped, 0U);
+  EXPECT_GT(highest, top + kFall / 3);
+  EXPECT_NEAR(last, top, 1e-4);
 }
 
 // The arms' joints are recorded, and their handles are computed again in the shifted world.

@@ -203,6 +203,20 @@ TEST(CobotContacts, OfThePandaAreThoseOfLinksThatAJointDoesNotConnect) {
   EXPECT_EQ(with_link, 8 * 7 / 2);
 }
 
+// The base's mesh has holes for screws.
+TEST(CobotContacts, DoNotRequireLinksWithoutHoles) {
+  Scenario s = RigidBox();
+  s.cobot.model = "package://example-robot-data/robots/ur_description/urdf/ur5_robot.urdf";
+  s.cobot.remove_links.clear();
+  s.cobot.end_effector = "tool0";
+  s.cobot.posture = {0, -1.2, 1.8, -2.17, -1.57, 0};
+  s.cobot.touches = {"object", "cobot"};
+  ASSERT_EQ(RefusalOf(s), "");
+  const std::string text = Text(World(s).contact_pairs());
+  EXPECT_NE(text.find("base_link-object "), std::string::npos) << text;
+  EXPECT_NE(text.find("base_link-forearm_link "), std::string::npos) << text;
+}
+
 // The solver's warm start is part of the state.
 TEST_F(SlidingLinks, ASavedStateContinuesBitForBit) {
   Scenario s = With({"cobot.touches=[object, cobot]"});
