@@ -11,6 +11,7 @@
 #include "scenario/field_reader.h"
 #include "scenario/field_writer.h"
 #include "scenario/participant_fields.h"
+#include "tracks/read_map.h"
 #include "tracks/track_map_fields.h"
 
 namespace predictor::tracks {
@@ -216,16 +217,7 @@ std::string CommentsOf(const PersonHeader& header) {
 }  // namespace
 
 ImportMap ParseImportMap(const std::string& text, const std::string& name) {
-  const YamlNode root = ParseYaml(text, name);
-  if (root.kind != YamlNode::Kind::kMap)
-    throw InputError(root.place.Text(), "a mapping must be a group of keys, but this is " +
-                                            Describe(root) + ". Begin with \"left_hand:\".");
-  Problems problems;
-  auto map = ReadStruct<ImportMap>(root, &problems);
-  problems.ThrowIfAny();
-  CheckImport(map, root, &problems);
-  problems.ThrowIfAny();
-  return map;
+  return ReadMap<ImportMap>(text, name, "left_hand:", CheckImport);
 }
 
 std::string ImportPerson(const ImportMap& map, const SeriesFile& file) {

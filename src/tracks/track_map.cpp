@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "scenario/field_reader.h"
+#include "tracks/read_map.h"
 #include "tracks/track_map_fields.h"
 
 namespace predictor::tracks {
@@ -74,20 +75,14 @@ void CheckTrackMap(const TrackMap& map, const YamlNode& root, Problems* problems
 }
 
 TrackMap ParseTrackMap(const std::string& text, const std::string& name) {
-  const YamlNode root = ParseYaml(text, name);
-  if (root.kind != YamlNode::Kind::kMap)
-    throw InputError(root.place.Text(), "a mapping must be a group of keys, but this is " +
-                                            Describe(root) + ". Begin with \"file: NAME\".");
-  Problems problems;
-  auto map = ReadStruct<TrackMap>(root, &problems);
-  problems.ThrowIfAny();
-  CheckTrackMap(map, root, &problems);
-  if (map.MapsNothing())
-    problems.Add(root.place,
-                 "The mapping maps nothing. Add head, left_elbow, right_elbow, "
-                 "left_hand, right_hand, series or emg.");
-  problems.ThrowIfAny();
-  return map;
+  const auto check = [](const TrackMap& map, const YamlNode& root, Problems* problems) {
+    CheckTrackMap(map, root, problems);
+    if (map.MapsNothing())
+      problems->Add(root.place,
+                    "The mapping maps nothing. Add head, left_elbow, right_elbow, left_hand, "
+                    "right_hand, series or emg.");
+  };
+  return ReadMap<TrackMap>(text, name, "file: NAME", check);
 }
 
 TrackMap LoadTrackMap(const std::filesystem::path& file) {
