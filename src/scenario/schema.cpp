@@ -236,12 +236,14 @@ Json TakeRequirements(Json* schema) {
   return taken;
 }
 
-// Schema of a whole file, which is itself the default value.
+// Schema of a whole file, which is itself the default value. `name` identifies the schema.
 template <class T>
-Json SchemaOfFile(const char* title, T file) {
+Json SchemaOfFile(const std::string& name, const char* title, T file) {
   Describer describer;
   Fields(describer, file);
-  Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", title}};
+  Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"},
+                 {"$id", "urn:predictor:schema:" + name},
+                 {"title", title}};
   schema.update(describer.Object());
   AddDefaults(WriteStruct(file), &schema);
   return schema;
@@ -250,7 +252,7 @@ Json SchemaOfFile(const char* title, T file) {
 }  // namespace
 
 std::string ScenarioSchema() {
-  Json schema = SchemaOfFile("Scenario of PREDICTOR", Scenario());
+  Json schema = SchemaOfFile("scenario", "Scenario of PREDICTOR", Scenario());
   // Requirements of the loader that a schema can express.
   schema["required"].push_back("object");
   schema["required"].push_back("handles");
@@ -266,7 +268,7 @@ std::string ScenarioSchema() {
 }
 
 std::string MachineSchema() {
-  Json schema = SchemaOfFile("Machine file of PREDICTOR", Machine());
+  Json schema = SchemaOfFile("machine", "Machine file of PREDICTOR", Machine());
   schema["required"].push_back("arms");
   schema["properties"]["arms"]["minProperties"] = 1;
   return schema.dump(2) + "\n";

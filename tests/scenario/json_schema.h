@@ -69,7 +69,7 @@ inline bool MeetsKeyword(const std::string& keyword, const Json& is, const Json&
     }
     return true;
   }
-  for (const char* comment : {"description", "default", "title", "$schema"}) {
+  for (const char* comment : {"description", "default", "title", "$schema", "$id"}) {
     if (keyword == comment) return true;
   }
   throw std::logic_error("unknown keyword " + keyword);

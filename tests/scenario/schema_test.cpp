@@ -82,6 +82,7 @@ TEST(Schema, EqualsTheFileInTheScenariosFolder) {
 
 TEST(Schema, IsDraft07AndDescribesEachKey) {
   EXPECT_EQ(Schema()["$schema"], "http://json-schema.org/draft-07/schema#");
+  EXPECT_EQ(Schema()["$id"], "urn:predictor:schema:scenario");
   std::function<int(const Json&)> count = [&](const Json& schema) {
     int keys = 0;
     if (schema.contains("properties")) {
