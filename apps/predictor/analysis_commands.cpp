@@ -320,6 +320,8 @@ void AddSurvey(CLI::App* app, Request* r) {
                   "What the person used [default: as in the recording]")
       ->type_name("real|emulated");
   AddPort(ask, "Options", "--port", &o->port, "Port of the page (0: any)");
+  AddJson(ask, o);
+  AddForce(ask, o);
   ask->footer("Example:\n  predictor survey ask runs/real_1.mcap\n");
 
   CLI::App* report =

@@ -258,6 +258,9 @@ int CompareCommand(const CompareOptions& options);
 int ExportDataCommand(const RecordingOptions& options);
 int ExportEventsCommand(const RecordingOptions& options);
 int ListChannelsCommand(const RecordingOptions& options);
+// Return a table of the reference as JSON.
+std::string QuantitiesReference();
+std::string ConsoleReference();
 // Writes the repaired recording to `output`, or to NAME.repaired.mcap next to the recording if
 // `output` is empty.
 int RepairCommand(const RecordingOptions& options);
@@ -266,7 +269,7 @@ int ShareCommand(const RecordingOptions& options);
 // Returns the exit code kUnfit if data of the person remain, or if a place could not be searched.
 int ForgetCommand(const ForgetOptions& options);
 // Shows a recording in the viewer until the user ends the program.
-int ReplayCommand(const std::string& recording, const ServeOptions& options);
+int ReplayCommand(const RecordingOptions& recording, const ServeOptions& options);
 // Returns the exit code kDeparted if the recomputed run differs.
 int VerifyCommand(const RecordingOptions& options);
 // Tests the library of a controller with a recorded run. Returns the exit code kUnfit if the

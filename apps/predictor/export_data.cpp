@@ -86,6 +86,14 @@ void FindUnits(const RecordingHeader& header, std::vector<Column>* columns) {
   SetJointUnits(RestoredScenario(header).PrismaticJoints(), columns);
 }
 
+nlohmann::ordered_json JsonOf(const Column& column) {
+  return {{"name", column.name},
+          {"type", column.type},
+          {"unit", column.unit},
+          {"frame", column.frame},
+          {"meaning", column.meaning}};
+}
+
 // Returns the columns that match the patterns. Columns of inputs are included only if a pattern
 // names them explicitly.
 std::vector<Column> Chosen(const std::vector<std::string>& channels, const TickRecord& record) {
@@ -139,20 +147,23 @@ int ListChannelsCommand(const RecordingOptions& options) {
   options.CheckWritable();
   RecordingReader reader(options.recording);
   std::string text;
-  nlohmann::json list = nlohmann::json::array();
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
   std::vector<Column> columns = ColumnsOf(FirstRecord(options, &reader), InputColumns::kIncluded);
   FindUnits(reader.header(), &columns);
   for (const Column& column : columns) {
     text += column.name + (column.unit.empty() ? "" : "  [" + column.unit + "]") +
             (column.frame.empty() ? "" : "  in " + column.frame) +
             (column.meaning.empty() ? "" : "  # " + column.meaning) + "\n";
-    list.push_back({{"name", column.name},
-                    {"unit", column.unit},
-                    {"frame", column.frame},
-                    {"meaning", column.meaning}});
+    list.push_back(JsonOf(column));
   }
   options.Write(text, list.dump(2) + "\n");
   return kFinished;
+}
+
+std::string QuantitiesReference() {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Column& column : AllColumns()) list.push_back(JsonOf(column));
+  return list.dump(2) + "\n";
 }
 
 int ExportEventsCommand(const RecordingOptions& options) {
@@ -183,6 +194,11 @@ int ExportEventsCommand(const RecordingOptions& options) {
 }
 
 int ExportDataCommand(const RecordingOptions& options) {
+  options.CheckWritable();
+  if (options.json == "-" && (options.output.empty() || options.output == "-"))
+    throw InputError(
+        "The table and the JSON cannot both go to standard output. Give a file for the table with "
+        "-o, or for the JSON with --json FILE.");
   RecordingReader reader(options.recording);
   TickRecord record = FirstRecord(options, &reader);
   std::vector<Column> columns = Chosen(options.channels, record);
@@ -190,12 +206,14 @@ int ExportDataCommand(const RecordingOptions& options) {
   options.RefuseToReplace(options.output);
   Table out(options.output);
   Progress progress("Exporting", CountOrNothing(&reader), options.quiet);
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Column& column : columns) list.push_back(JsonOf(column));
   std::string text = Heading(columns);
   std::string damage;  // damage at which the recording ends
-  std::uint64_t ticks = 0;
+  std::uint64_t ticks = 0, rows = 0;
   bool good = true;
   for (bool more = true; more && good; more = NextOrDamage(&reader, &record, &damage)) {
-    if (ticks++ % options.every == 0) text += Row(columns, record);
+    if (ticks++ % options.every == 0) text += Row(columns, record), ++rows;
     if (text.size() < 1U << 16U) continue;
     good = out.Add(text);
     text.clear();
@@ -208,6 +226,10 @@ int ExportDataCommand(const RecordingOptions& options) {
     throw InputError(
         damage + " The table ends at tick " + std::to_string(record.tick) +
         ". To get the rest, repair the file with `predictor repair` and export the result.");
+  options.WriteJson(
+      nlohmann::ordered_json{{"ticks", ticks}, {"rows", rows}, {"columns", std::move(list)}}.dump(
+          2) +
+      "\n");
   return kFinished;
 }
 

@@ -184,10 +184,11 @@ std::string JsonOf(const Verification& v) {
 
 }  // namespace
 
-int ReplayCommand(const std::string& recording, const ServeOptions& options) {
+int ReplayCommand(const RecordingOptions& recording, const ServeOptions& options) {
+  recording.CheckWritable();
   QuitOn({SIGINT, SIGTERM});
   BoundOutput();
-  RecordingReader reader(recording);
+  RecordingReader reader(recording.recording);
   ShowProblem(reader.problem());
   const TemporaryFolder folder;
   const Scenario scenario = RestoreScenario(reader.header(), folder.path());
@@ -207,6 +208,11 @@ int ReplayCommand(const std::string& recording, const ServeOptions& options) {
                               Quote(scenario.name).c_str()));
   player.Play();
   viewer.EndRun("The replay was ended from the console.");
+  recording.WriteJson(nlohmann::ordered_json{{"scenario", scenario.name},
+                                             {"duration_s", player.duration()},
+                                             {"first_tick", player.first_tick()}}
+                          .dump(2) +
+                      "\n");
   return kFinished;
 }
 

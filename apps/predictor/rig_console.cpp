@@ -9,6 +9,7 @@
 
 #include "core/contained_thread.h"
 #include "core/format.h"
+#include "safety/console_keys.h"
 
 namespace predictor {
 namespace {
@@ -36,10 +37,8 @@ RigConsole::RigConsole(std::function<void(RunEvent)> request,
     : request_(std::move(request)),
       line_(std::move(line)),
       enabling_device_(enabling_device),
-      askings_{Asking{HeldKey('a'), RunEvent::kAlignRequested, enabling_device},
-               Asking{HeldKey('s'), RunEvent::kStartRequested, enabling_device},
-               Asking{HeldKey('r'), RunEvent::kRecoverRequested, enabling_device},
-               Asking{HeldKey('z'), RunEvent::kReset, true}} {
+      askings_{AskingOf(kConsoleKeys[0]), AskingOf(kConsoleKeys[1]), AskingOf(kConsoleKeys[2]),
+               AskingOf(kConsoleKeys[3])} {
   // A console that receives no keys is treated as an absent operator.
   thread_ = ContainedThread(
       "console", [this] { Listen(); },
@@ -76,7 +75,7 @@ void RigConsole::Listen() {
 
 void RigConsole::Key(char key, double now) {
   if (typing_) return Type(key);
-  typing_ = key == ':';
+  typing_ = key == kCommandKey;
   if (!typing_ && std::ranges::none_of(
                       askings_, [key](const Asking& asking) { return asking.key.key() == key; }))
     request_(RunEvent::kStopRequested);

@@ -11,6 +11,7 @@
 
 #include "core/held_key.h"
 #include "raw_keys.h"
+#include "safety/console_keys.h"
 #include "safety/state_machine.h"
 #include "screen.h"
 
@@ -48,6 +49,9 @@ class RigConsole {
     RunEvent event;
     bool by_touch;
   };
+  Asking AskingOf(const ConsoleKey& key) const {
+    return {HeldKey(key.key), key.event, enabling_device_ || !key.held};
+  }
 
   void Listen();
   void Key(char key, double now);
@@ -61,7 +65,7 @@ class RigConsole {
   RawKeys keys_{true};
   std::atomic<std::uint32_t> enabling_{0};
   std::atomic<bool> done_{false};
-  std::array<Asking, 4> askings_;
+  std::array<Asking, kConsoleKeys.size()> askings_;
   bool typing_ = false;  // a command after a colon
   TypedLine typed_;
   std::thread thread_;

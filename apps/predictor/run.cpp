@@ -10,6 +10,7 @@
 
 #include "commands.h"
 #include "commissioning/arm_checks.h"
+#include "console_commands.h"
 #include "core/contained_thread.h"
 #include "core/error.h"
 #include "core/text.h"
@@ -53,66 +54,11 @@ void PrintLoop(const RealTimeReport& report) {
       static_cast<double>(report.lateness_us[3]), report.scheduling.c_str());
 }
 
-// The commands that the user may type at the console during a run.
-class Commands {
- public:
-  // Either argument may be null.
-  Commands(viewer::ViewerProcess* viewer, RunRecording* recording)
-      : viewer_(viewer), recording_(recording) {}
-
-  void Obey(const std::string& line) {
-    if (line == "mark" || line.starts_with("mark ")) return Mark(line.substr(4));
-    if (!viewer_) {
-      if (!line.empty())
-        TheScreen().Print(
-            "Unknown command. Without a viewer page, the only command is mark [TEXT]. Ctrl-C ends "
-            "the run.");
-      return;
-    }
-    if (line == "pin look" || line == "pin operator" || line == "pin control")
-      viewer_->AskPin(line.substr(4));
-    else if (line == "revoke operator" || line == "revoke control")
-      viewer_->Revoke(line.substr(7));
-    else if (const unsigned long client = ClientOf(line); client != 0)
-      viewer_->Kick(static_cast<std::uint32_t>(client));
-    else if (line == "kick foxglove")
-      viewer_->KickFoxglove();
-    else if (line == "foxglove")
-      viewer_->AskFoxglove();
-    else if (line == "status")
-      viewer_->AskStatus();
-    else if (!line.empty())
-      TheScreen().Print(
-          "Unknown command. The commands are: pin look, pin operator, pin control, revoke "
-          "operator, revoke control, kick N (a client's number), kick foxglove, mark [TEXT], "
-          "foxglove, status. Ctrl-C ends the run.");
-  }
-
- private:
-  void Mark(const std::string& text) {
-    if (recording_)
-      recording_->Mark("marker:" + (text.empty() ? " console" : text));
-    else
-      TheScreen().Print("This run is not recorded.");
-  }
-  // Returns N of "kick N", or 0 for any other text.
-  static unsigned long ClientOf(const std::string& line) {
-    const std::string kick = "kick ";
-    if (!line.starts_with(kick) || line.size() == kick.size() || line.size() > kick.size() + 9 ||
-        line.find_first_not_of("0123456789", kick.size()) != std::string::npos)
-      return 0;
-    return std::stoul(line.substr(kick.size()));
-  }
-
-  viewer::ViewerProcess* viewer_;
-  RunRecording* recording_;
-};
-
 // Reads commands from standard input during runs without real arms. A process in the background
 // receives no commands.
 class Console {
  public:
-  explicit Console(Commands* commands) : commands_(commands) {
+  explicit Console(ConsoleCommands* commands) : commands_(commands) {
     // tcgetpgrp returns −1 if standard input is not this process's controlling terminal.
     const pid_t in_front = tcgetpgrp(STDIN_FILENO);
     if (in_front != -1 && in_front != getpgrp()) return;
@@ -142,7 +88,7 @@ class Console {
     }
   }
 
-  Commands* commands_;
+  ConsoleCommands* commands_;
   std::optional<RawKeys> keys_;
   std::atomic<bool> done_{false};
   std::thread thread_;
@@ -206,7 +152,7 @@ class Run {
   // Returns an exit code. `next` is the scenario that a page chose to run after the present
   // scenario.
   int Go(bool by_itself, std::optional<NextRun>* next) {
-    Commands commands(viewer_ ? &*viewer_ : nullptr, recording_ ? &*recording_ : nullptr);
+    ConsoleCommands commands(viewer_ ? &*viewer_ : nullptr, recording_ ? &*recording_ : nullptr);
     std::optional<Console> console;
     std::optional<RigConsole> rig;
     RealTimeOptions loop;
@@ -299,7 +245,7 @@ class Run {
     viewer_.emplace(
         scenario_, serve.page, board_, mailbox_,
         [](const std::string& text) { TheScreen().Print(text); }, evaluation_->states());
-    Commands commands(&*viewer_, nullptr);
+    ConsoleCommands commands(&*viewer_, nullptr);
     std::optional<Console> console;
     if (isatty(STDIN_FILENO) == 1) console.emplace(&commands);
     return WaitForChoice();

@@ -115,10 +115,12 @@ void AddSimulate(CLI::App* app, Request* r) {
 void AddReplay(CLI::App* app, Request* r) {
   CLI::App* replay = AddCommand(app, kRunGroup, "replay",
                                 "Show a recording in the browser, with seek, speed and step", r,
-                                [r] { return ReplayCommand(r->recording.recording, r->serve); });
+                                [r] { return ReplayCommand(r->recording, r->serve); });
   AddRecording(replay, &r->recording.recording);
   AddPageOptions(replay, &r->serve);
   AddEvaluation(replay, &r->serve);
+  AddJson(replay, &r->recording);
+  AddForce(replay, &r->recording);
   replay->footer("Example:\n  predictor replay runs/box_9kg_2026-01-31_14-05-09.mcap\n");
 }
 

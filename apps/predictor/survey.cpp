@@ -104,11 +104,12 @@ void StopAtSignal(viewer::Server* server) {
 }
 
 // After this call, the process parses the browsers' input with restricted rights and may only write
-// answers into this folder.
-void GiveUpRights(const fs::path& folder) {
+// into the folder of the answers and into that of the file `json`.
+void GiveUpRights(const fs::path& folder, const std::string& json) {
   if (kSanitized) return;
   Preparation may;
   may.write = {folder};
+  if (!json.empty() && json != "-") may.write.push_back(fs::absolute(json).parent_path());
   if (const std::string missing = EnterPreparation(may); !missing.empty())
     TheScreen().Print("Warning: the server is not fully sandboxed, because this system lacks " +
                       missing + ".");
@@ -157,6 +158,7 @@ std::string JsonOf(const SurveyReport& report) {
 }  // namespace
 
 int SurveyAskCommand(const SurveyOptions& options) {
+  options.CheckWritable();
   const Destination to = DestinationOf(options);
   survey::SurveySetup setup;
   setup.hosts = {"localhost", "127.0.0.1", "::1"};
@@ -171,7 +173,7 @@ int SurveyAskCommand(const SurveyOptions& options) {
   serving.port = options.port;
   viewer::Server server(serving, &app);
   StopAtSignal(&server);
-  GiveUpRights(to.folder);
+  GiveUpRights(to.folder, options.json);
   bool running = true;  // the end of the server also ends connections
   app.OnOver([&] {
     if (running) server.Stop();
@@ -183,10 +185,12 @@ int SurveyAskCommand(const SurveyOptions& options) {
   running = false;
   // The pseudonym is not printed, because only the person should know the pseudonym and only the
   // file should contain it.
-  if (app.end() == survey::SurveyEnd::kStored)
+  const bool stored = app.end() == survey::SurveyEnd::kStored;
+  if (stored)
     TheScreen().Print("The answer was stored in " + to.folder.string() + ".");
   else
     TheScreen().Print("No answer was given.");
+  options.WriteJson(Json{{"stored", stored}, {"folder", to.folder.string()}}.dump(2) + "\n");
   return kFinished;
 }
 

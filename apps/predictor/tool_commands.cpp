@@ -21,6 +21,7 @@ constexpr const char* kToolGroup = "Tools";
 void AddTable(CLI::App* app, RecordingOptions* o) {
   AddOption(app, "Output", "-o,--output", &o->output, "FILE.csv",
             "File to write [default: standard output]");
+  AddJson(app, o);
   AddForce(app, o);
   AddQuiet(app, o);
 }
@@ -50,7 +51,6 @@ void AddExport(CLI::App* app, Request* r) {
                  r, [o] { return ExportEventsCommand(*o); });
   AddRecording(events, &o->recording);
   AddTable(events, o);
-  AddJson(events, o);
   events->footer("Example:\n  predictor export events run.mcap -o events.csv\n");
 
   CLI::App* channels = AddCommand(all, "Commands", "channels", "Names and units of the channels", r,
@@ -185,6 +185,18 @@ void AddSchema(CLI::App* app, Request* r) {
            population::PopulationSchema);
 }
 
+void AddReference(CLI::App* app, Request* r) {
+  CLI::App* reference =
+      app->add_subcommand("reference", "Print a table of the reference as JSON, for documentation")
+          ->group(kToolGroup)
+          ->require_subcommand(1);
+  AddPrint(reference, "Commands", "quantities",
+           "Names, types, units, frames and meanings of all numbers in a recording", r,
+           QuantitiesReference);
+  AddPrint(reference, "Commands", "console", "Commands and keys of the console", r,
+           ConsoleReference);
+}
+
 // Prints the help of the command that `words` name.
 int ShowHelp(const CLI::App* app, const std::vector<std::string>& words) {
   for (const std::string& word : words) {
@@ -213,6 +225,7 @@ void AddToolCommands(CLI::App* app, Request* r) {
           DrawPseudonym)
       ->footer("Example:\n  predictor pseudonym\n");
   AddSchema(app, r);
+  AddReference(app, r);
   CLI::App* help = AddCommand(app, kToolGroup, "help", "Show the help of a command", r,
                               [app, r] { return ShowHelp(app, r->help); });
   help->add_option("command", r->help,

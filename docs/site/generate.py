@@ -9,7 +9,6 @@ import pathlib
 import re
 import subprocess
 import sys
-import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGES = ROOT / "docs" / "reference" / "generated"
@@ -69,7 +68,7 @@ def default(schema, required):
     return "**required**" if required else ""
 
 
-UNIT = re.compile(r"\s*\[([^\[\]]*)\]")
+UNIT = re.compile(r"\s*\[([^\[\],]*)\]")
 
 
 def describe(schema):
@@ -128,6 +127,10 @@ def json_schema(program, of):
     return json.loads(run(program, "schema", of))
 
 
+def reference(program, of):
+    return json.loads(run(program, "reference", of))
+
+
 # ---- the command line ----------------------------------------------------------------------------------------------
 
 def subcommands(program, path):
@@ -157,27 +160,32 @@ def command_line_page(program):
 
 # ---- what a run leaves ---------------------------------------------------------------------------------------------
 
-def a_recording(program, folder):
-    """Returns the beginning of the first experiment."""
-    recording = folder / "run.mcap"
-    run(program, "simulate", "scenarios/box_9kg.yaml", "--duration", "6", "--record", recording)
-    return recording
+INDEX = re.compile(r"\[(\d+)\]")
 
 
-def quantities_page(program, recording):
-    groups = {}
-    for line in run(program, "export", "channels", recording).splitlines():
-        name, *rest = line.split(None, 1)
-        groups.setdefault(name.split(".")[0], []).append((f"`{name}`", rest[0].strip() if rest else ""))
-    if not groups:
-        sys.exit("export channels lists nothing")
-    described = any(row[1] for rows in groups.values() for row in rows)
+def quantities_page(quantities):
+    """Lists every number of a recording. The numbers of an array share a row."""
+    groups, arrays = {}, {}
+    for one in quantities:
+        name = one["name"]
+        if not one["meaning"]:
+            sys.exit(f"src/core/tick_fields.h gives {name} no meaning")
+        row = arrays.setdefault((INDEX.sub("[]", name), *list(one.values())[1:]), [])
+        row.append([int(index) for index in INDEX.findall(name)])
+    for (name, *rest), indices in arrays.items():
+        for least, most in zip(*(map(f, zip(*indices)) for f in (min, max))):
+            name = name.replace("[]", f"[{least}…{most}]" if most > least else f"[{least}]", 1)
+        groups.setdefault(re.match(r"hands\.\w+|\w+", name)[0], []).append((f"`{name}`", *rest))
+    if len(groups) < 9:
+        sys.exit("`predictor reference quantities` lists too few groups")
     parts = ["# Recorded quantities",
-             "The columns that `predictor export data` writes, by their names in a recording. "
-             "[Recordings](../recording.md) gives units, frames and the file format."]
+             "The numbers of each tick, by the names that `predictor export data` gives them. "
+             "A recording contains the numbers of those arms, joints and objects that exist. "
+             "The type is that of ROS 2 messages, and flags and enumerations are integers. "
+             "The frame is that whose axes the components refer to; S is the sensor's frame. "
+             "[Recordings](../recording.md) describes the file format, which also names the values of enumerations."]
     for group, rows in groups.items():
-        parts.append(f"## {group}")
-        parts.append(table(("name", "meaning"), rows) if described else ", ".join(row[0] for row in rows))
+        parts += [f"## {group}", table(("name", "type", "unit", "frame", "meaning"), rows)]
     return "\n\n".join(parts)
 
 
@@ -304,6 +312,55 @@ def controllers_page(schema):
         keys_page("", "", {"properties": {"cobot.controller": controller}}).partition("## cobot.controller")[2]])
 
 
+def console_page(console):
+    commands = [(f"`{one['command']}`", one["meaning"], "" if one["of_viewer"] else "yes") for one in console["commands"]]
+    keys = [(f"{'hold' if one['held'] else 'press'} `{one['key']}`", one["meaning"]) for one in console["keys"]]
+    if len(commands) < 8 or len(keys) < 5:
+        sys.exit("`predictor reference console` names too few commands or keys")
+    return "\n\n".join([
+        "# Console commands and keys",
+        "What `predictor run` accepts at its terminal. [Console](../console.md) explains how to use it.",
+        "## Commands", table(("command", "what it does", "also without a viewer"), commands),
+        "Ctrl-C brings the arms to rest and ends the program.",
+        "## Keys with real arms", table(("key", "what it does"), [*keys, ("any other key", "**stops the arms**")])])
+
+
+# The functions that read keys of `rendering` for a task or limit, and their sources.
+READERS = {"LinkPairs(": "link_pairs.cpp", "TwistWeight(": "task.cpp"}
+
+
+def rendering_page(schema):
+    """Lists the tasks and limits with the keys of `rendering` that their sources read."""
+    haptics = ROOT / "src" / "haptics"
+    found = schema["properties"]["rendering"]["properties"]
+    registry = (haptics / "registry.h").read_text("utf-8")
+    parts, used = [
+        "# Rendering tasks and limits",
+        "Haptic rendering weighs the tasks against each other, and never exceeds a limit by more than its slack. "
+        "The parameters are keys of `rendering` in a scenario. "
+        "To write another task or limit, see [Add a limit or a task](../../developer/add-a-limit.md)."], set()
+    for folder, title in (("tasks", "Task"), ("limits", "Limit")):
+        listed = re.search(r"#define PREDICTOR_" + folder.upper() + r"\(add\)((?:.*\\\n)*.*)", registry)[1]
+        for kind in re.findall(r"add\(k(\w+)\)", listed):
+            file = haptics / folder / (re.sub(r"(?<!^)([A-Z])", r"_\1", kind).lower() + ".cpp")
+            source = file.read_text("utf-8")
+            name, meaning = re.search(r'KindOf<[^>]*>\(\s*"(\w+)",\s*"([^"]*)"', source).groups()
+            comment = " ".join(re.match(r"((?://.*\n)+)", source)[1].replace("// ", "").replace("//", "").split())
+            read = source + "".join((haptics / at).read_text("utf-8") for call, at in READERS.items() if call in source)
+            own = dict.fromkeys(key for keys in re.findall(r"rendering\.(\w+)|spec\.(\w+)|setup\.(lead)\b", read)
+                                for key in keys if key in found)
+            if name in found:
+                own[name] = None
+            used |= own.keys()
+            rows = [(f"`{key}`", default(found[key], False), describe(found[key])[0], allowed(found[key]),
+                     describe(found[key])[1]) for key in own]
+            parts += [f"## {title} {name}", meaning[0].upper() + meaning[1:] + ".", comment]
+            parts += [table(("key", "default", "unit", "allowed", "meaning"), rows)] if rows else ["It has no parameters."]
+    if left := found.keys() - used - {"formulation", "formulation_except"}:
+        sys.exit(f"no task or limit reads these keys of rendering: {', '.join(sorted(left))}")
+    return "\n\n".join(parts)
+
+
 def stop_causes_page():
     text = json.loads((ROOT / "src" / "core" / "message_catalogue.json").read_text("utf-8"))
     rows = []
@@ -357,6 +414,9 @@ def main():
                                   "[Machine file](../machine-file.md) explains them.", json_schema(program, "machine")),
         "command-line": command_line_page(program),
         "controllers": controllers_page(scenario),
+        "recorded-quantities": quantities_page(reference(program, "quantities")),
+        "console": console_page(reference(program, "console")),
+        "rendering": rendering_page(scenario),
         "modules": modules_page(),
         "stop-causes": stop_causes_page(),
         "summary-json": summary_page(json_schema(program, "summary")),
@@ -368,8 +428,6 @@ def main():
                             "The headers with which a program embeds the emulator, and those that an extension uses.",
                             *(f"## {h}\n\n```{{doxygenfile}} {pathlib.Path(h).name}\n```" for h in HEADERS)]),
     }
-    with tempfile.TemporaryDirectory() as folder:
-        pages["recorded-quantities"] = quantities_page(program, a_recording(program, pathlib.Path(folder)))
     PAGES.mkdir(parents=True, exist_ok=True)
     for old in PAGES.glob("*.md"):
         old.unlink()

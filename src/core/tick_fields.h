@@ -89,12 +89,14 @@ constexpr void VisitStatus(V& v, S& s) {
 
 template <class V, class I>
 constexpr void VisitInput(V& v, I& input) {
-  v.Unchecked({"kind"}, input.kind);
-  v.Unchecked({"parameter"}, input.parameter);
+  v.Unchecked({"kind", "", "", "number of the InputKind"}, input.kind);
+  v.Unchecked({"parameter", "", "", "number of the live parameter that the input sets"},
+              input.parameter);
   v.Value({"hand", "", "", "0 left, 1 right"}, input.hand);
-  v.Flag({"grip"}, input.grip);
+  v.Flag({"grip", "", "", "the hand is closed"}, input.grip);
   v.Value({"client", "", "", "number of the page"}, input.client);
-  v.Value({"value"}, input.value);
+  v.Value({"value", "", "", "new value of the parameter, or the value that the kind needs"},
+          input.value);
   v.Values({"p", "m", "W", "position; of a latency: times [ms]"}, input.p);
   v.Values({"q", "", "W", "orientation, scalar first"}, input.q);
 }
@@ -112,7 +114,7 @@ constexpr void VisitRun(V& v, R& r) {
   v.Value({"wall_ns", "ns", "", "monotonic clock at the tick's start; 0 in virtual time", "wall_ns",
            true},
           r.wall_ns);
-  v.Value({"state", "", "", "", "state"}, r.state);
+  v.Value({"state", "", "", "state of the run", "state"}, r.state);
   v.Value({"cause", "", "", "cause of the stop, until reset", "cause"}, r.cause);
   v.Value({"cause_hand", "", "", "0 left, 1 right, -1 neither or both", "cause_hand"},
           r.cause_hand);
@@ -168,18 +170,19 @@ constexpr void VisitRun(V& v, R& r) {
 
 template <class V, class R>
 constexpr void VisitInputs(V& v, R& r) {
-  v.Value({"input_count", "", "", "taken in this tick"}, r.input_count);
+  v.Value({"input_count", "", "", "inputs taken in this tick"}, r.input_count);
   v.Inputs({"inputs", "", "", "from people and pages"}, "predictor_msgs/Input", r.inputs,
            r.input_count, [](auto& inner, auto& input) { VisitInput(inner, input); });
 }
 
 template <class V, class H>
 constexpr void VisitHand(V& v, H& h) {
-  v.Presence({"present", "", "", "", "present"}, h.present);
+  v.Presence({"present", "", "", "the arm exists", "present"}, h.present);
   v.Flag({"gripping", "", "", "simulated operator: grips; otherwise: the state is RUN", "gripping"},
          h.gripping);
   v.Value({"arm_dof", "", "", "joints of the arm"}, h.arm_dof);
-  v.Flag({"sensor_saturated"}, h.sensor_saturated);
+  v.Flag({"sensor_saturated", "", "", "a reading exceeds the range of the force-torque sensor"},
+         h.sensor_saturated);
   v.Flag({"arm_fault", "", "", "the arm reports a fault", "arm_fault"}, h.arm_fault);
   v.Value(
       {"warnings", "", "",
@@ -200,14 +203,15 @@ constexpr void VisitHand(V& v, H& h) {
   v.Wrench({"coupling", "", "W", "wrench of the virtual coupling on D", "coupling"}, h.coupling);
   v.Wrench({"true_wrench", "", "W", "simulated rig: true wrench of the hand, about H"},
            h.true_wrench);
-  v.Joints({"q", "rad", "", "measured", "arm_q"}, h.q, h.arm_dof);
-  v.Joints({"v", "rad/s", "", "measured"}, h.v, h.arm_dof);
-  v.Joints({"command", "rad/s", "", "sent to the arm"}, h.command, h.arm_dof);
+  v.Joints({"q", "rad", "", "joint positions of the arm, measured", "arm_q"}, h.q, h.arm_dof);
+  v.Joints({"v", "rad/s", "", "joint velocities of the arm, measured"}, h.v, h.arm_dof);
+  v.Joints({"command", "rad/s", "", "joint velocities sent to the arm"}, h.command, h.arm_dof);
   v.Value({"arm_age", "s", "", "age of the arm's sample"}, h.arm_age);
   v.Value({"sensor_age", "s", "", "age of the sensor's sample", "sensor_age"}, h.sensor_age);
   v.Value({"arm_sequence", "", "", "number of the arm's sample"}, h.arm_sequence);
   v.Value({"sensor_sequence", "", "", "number of the sensor's sample"}, h.sensor_sequence);
-  v.Value({"manipulability", "", "", "translational", "manipulability"}, h.manipulability);
+  v.Value({"manipulability", "", "", "translational manipulability of the arm", "manipulability"},
+          h.manipulability);
   v.Values({"warning_values", "", "",
             "share of samples lost within a second (arm, sensor), packets refused [1/s], drift of "
             "the bias [N/min]"},
@@ -224,13 +228,13 @@ constexpr void VisitCobot(V& v, R& r) {
   v.Joints({"torque", "N m or N", "",
             "torques that the controller commands; in N for a prismatic joint"},
            r.cobot_torque, r.cobot_dof);
-  v.Message({"end_effector", "", "", "E", "end_effector"}, "predictor_msgs/Motion",
+  v.Message({"end_effector", "", "", "end-effector E", "end_effector"}, "predictor_msgs/Motion",
             [&](auto& inner) { VisitMotion(inner, r.end_effector); });
 }
 
 template <class V, class R>
 constexpr void VisitObject(V& v, R& r) {
-  v.Message({"object", "", "", "O", "object"}, "predictor_msgs/Motion",
+  v.Message({"object", "", "", "object O", "object"}, "predictor_msgs/Motion",
             [&](auto& inner) { VisitMotion(inner, r.object); });
   v.Value({"energy", "J", "", "energy of the virtual world"}, r.energy);
 }
@@ -264,12 +268,14 @@ constexpr void VisitQp(V& v, R& r) {
            "distance of the nearest link pair; inf without pairs and before the first QP",
            "elbow_distance"},
           r.link_distance);
-  v.Value({"kkt_residual", "", "", "largest, scaled"}, r.kkt_residual);
+  v.Value({"kkt_residual", "", "", "largest residual of the optimality conditions, scaled"},
+          r.kkt_residual);
 }
 
 template <class V, class R>
 constexpr void VisitTiming(V& v, R& r) {
-  v.Named({"stage_us", "us", "", "", "stage_us", true}, kStageNames, r.stage_us);
+  v.Named({"stage_us", "us", "", "computing time of the stage (tick: of all)", "stage_us", true},
+          kStageNames, r.stage_us);
 }
 
 template <class V, class R>

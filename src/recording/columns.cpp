@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "core/tick_fields.h"
+#include "recording/type_name.h"
 
 namespace predictor {
 namespace {
@@ -112,8 +113,9 @@ class Surveyor {
   void Note(const std::string& name, const TickField& f, const T& x) {
     std::string meaning = message_;
     if (*f.meaning) meaning += (meaning.empty() ? "" : ": ") + std::string(f.meaning);
-    columns.push_back({prefix_ + name, f.unit, f.frame, std::move(meaning), OffsetOf(x), sizeof(T),
-                       TextOf<T>, f.of_clock, in_inputs_, conditions_});
+    columns.push_back({prefix_ + name, recording::TypeName<T>(), f.unit, f.frame,
+                       std::move(meaning), OffsetOf(x), sizeof(T), TextOf<T>, f.of_clock,
+                       in_inputs_, conditions_});
   }
   void Axes(TickField f, const char* part, const double* x, const char* unit) {
     f.unit = unit;

@@ -14,7 +14,9 @@ namespace predictor {
 // One number of a record, for example "hands.left.wrench.force.x" or "cobot.q[3]".
 struct Column {
   std::string name;
-  std::string unit, frame, meaning;  // texts as in core/tick_fields.h; may be ""
+  std::string type;         // of the number in a recording, for example "float64"
+  std::string unit, frame;  // texts as in core/tick_fields.h; may be ""
+  std::string meaning;
   std::size_t offset = 0, size = 0;  // position in TickRecord [bytes]
   std::string (*text)(const std::byte* number) = nullptr;
   bool of_clock = false;  // measured by the computer's clock, so a replay does not reproduce it

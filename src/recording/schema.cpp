@@ -6,15 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "recording/type_name.h"
+
 namespace predictor::recording {
 namespace {
-
-template <class T>
-std::string TypeName() {
-  if constexpr (std::is_same_v<T, double>) return "float64";
-  if constexpr (std::is_same_v<T, float>) return "float32";
-  return (std::is_signed_v<T> ? "int" : "uint") + std::to_string(8 * sizeof(T));
-}
 
 constexpr std::pair<const char*, const char*> kGeometry[] = {
     {"geometry_msgs/Pose", "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n"},

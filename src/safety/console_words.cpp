@@ -12,14 +12,6 @@
 namespace predictor {
 namespace {
 
-using Request = ConsoleWords::Request;
-constexpr std::array<Request, 4> kRequests = {{
-    {RunEvent::kAlignRequested, 'a', "align", {RunState::kAlign, RunState::kAlign}},
-    {RunEvent::kStartRequested, 's', "start", {RunState::kRun, RunState::kRun}},
-    {RunEvent::kRecoverRequested, 'r', "recover", {RunState::kRecovery, RunState::kRecovery}},
-    {RunEvent::kReset, 'z', "reset", {RunState::kIdle, RunState::kSelfTest}},
-}};
-
 bool Asks(const TickRecord& record, RunEvent event) {
   return (record.requests >> static_cast<int>(event) & 1U) != 0;
 }
@@ -119,10 +111,10 @@ void ConsoleWords::AddWrongTime(const TickRecord& record) {
   if (begins && (record.cause != StopCause::kOperator || Asks(record, RunEvent::kStopRequested) ||
                  Asks(record, RunEvent::kStopAndPowerOff)))
     return;
-  for (const Request& request : kRequests) {
-    if (!Asks(record, request.event) || Granted(request, record.state)) continue;
-    if (Again(request.event, record.tick)) continue;
-    const MessageValue key{"key", std::string(1, request.key)}, name{"name", request.name};
+  for (const ConsoleKey& asked : kConsoleKeys) {
+    if (!Asks(record, asked.event) || Granted(asked, record.state)) continue;
+    if (Again(asked.event, record.tick)) continue;
+    const MessageValue key{"key", std::string(1, asked.key)}, name{"name", asked.name};
     lines_.push_back(
         stops
             ? Message("console.key_stops", {key, name, {"state", Name(state_)}})
@@ -132,9 +124,9 @@ void ConsoleWords::AddWrongTime(const TickRecord& record) {
 }
 
 // A request may be repeated while it is being granted, but a reset must change the state.
-bool ConsoleWords::Granted(const Request& request, RunState now) const {
-  if (request.event == RunEvent::kReset && now == state_) return false;
-  return now == request.granted[0] || now == request.granted[1];
+bool ConsoleWords::Granted(const ConsoleKey& key, RunState now) const {
+  if (key.event == RunEvent::kReset && now == state_) return false;
+  return now == key.granted[0] || now == key.granted[1];
 }
 
 std::string ConsoleWords::Possible(const TickRecord& record) const {

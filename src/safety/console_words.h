@@ -9,20 +9,13 @@
 #include <vector>
 
 #include "core/record.h"
+#include "safety/console_keys.h"
 #include "safety/state_machine.h"
 
 namespace predictor {
 
 class ConsoleWords {
  public:
-  // The request that a key makes, and the states that show that the request was granted.
-  struct Request {
-    RunEvent event;
-    char key;
-    const char* name;
-    std::array<RunState, 2> granted;
-  };
-
   // `enabling_device` states whether the operator holds a device instead of a key. `rate` is the
   // tick rate [Hz].
   ConsoleWords(bool enabling_device, double rate)
@@ -39,7 +32,7 @@ class ConsoleWords {
   void AddWrongTime(const TickRecord& record);
   void AddState(const TickRecord& record, const std::function<std::string()>& trouble);
   void AddFaults(const TickRecord& record, const std::function<std::string()>& trouble);
-  bool Granted(const Request& request, RunState now) const;
+  bool Granted(const ConsoleKey& key, RunState now) const;
   bool Again(RunEvent event, std::uint64_t tick);
   std::string Possible(const TickRecord& record) const;
 

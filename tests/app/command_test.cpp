@@ -37,6 +37,8 @@ TEST(ExitCode, ShowsHowItEnded) {
       {{"schema", "machine"}, 0},
       {{"schema", "summary"}, 0},
       {{"schema", "check"}, 0},
+      {{"reference", "quantities"}, 0},
+      {{"reference", "console"}, 0},
       {{"check", Scenario("box_9kg"), "--no-search", "--quiet"}, 0},
       {{"check", Scenario("underdamped"), "--no-search", "--quiet"}, 1},
       {{"check", Scenario("box_9kg"), "--only-walls"}, 2},  // needs --map
@@ -112,10 +114,11 @@ TEST(Terminal, ObeysNoNameOfAScenario) {
     EXPECT_NE((json ? child.errors() : child.output()).find(shown), std::string::npos)
         << arguments[0] << child.output();
   }
-  Child replay({"replay", recording, "--port", "0"});
+  Child replay({"replay", recording, "--port", "0", "--json"});
   EXPECT_TRUE(replay.Says("Press Ctrl-C")) << replay.errors();
   replay.Send(SIGINT);
   EXPECT_EQ(replay.Wait(), 0) << replay.errors();
+  EXPECT_GT(nlohmann::json::parse(replay.output())["duration_s"], 0.1) << replay.output();
   EXPECT_TRUE(harmless(replay.errors()));
   EXPECT_NE(replay.errors().find(shown), std::string::npos) << replay.errors();
 }

@@ -48,6 +48,21 @@ TEST(Columns, HaveNamesUnitsAndTheRecordsNumbers) {
   EXPECT_EQ(std::strtof(Find(columns, "timing.render").Text(record).c_str(), nullptr), 1.1F);
 }
 
+// The reference lists the types and meanings of all numbers.
+TEST(Columns, HaveTypesAndMeanings) {
+  for (const Column& column : AllColumns()) {
+    EXPECT_FALSE(column.meaning.empty()) << column.name << " has no meaning in core/tick_fields.h.";
+    EXPECT_EQ(column.type.substr(column.type.find_first_of("0123456789")),
+              std::to_string(8 * column.size))
+        << column.name;
+  }
+  EXPECT_EQ(Find(AllColumns(), "run.tick").type, "uint64");
+  EXPECT_EQ(Find(AllColumns(), "run.state").type, "uint8");
+  EXPECT_EQ(Find(AllColumns(), "run.action").type, "int32");
+  EXPECT_EQ(Find(AllColumns(), "run.run_time").type, "float64");
+  EXPECT_EQ(Find(AllColumns(), "timing.render").type, "float32");
+}
+
 TEST(Columns, AreReadBackAsTheSameNumber) {
   const TickRecord record = Sample();
   const std::string text = Find(AllColumns(), "hands.left.wrench.torque.z").Text(record);

@@ -15,8 +15,10 @@ namespace predictor::viewer {
 namespace {
 
 TEST(SurveyProcess, StoresAnAnswerWithoutFurtherRights) {
-  const test::TemporaryFolder folder;
-  Child survey({"survey", "ask", folder.path().string(), "--port", "0", "--condition", "real"});
+  const test::TemporaryFolder folder, other;
+  const std::string json = other / "result.json";
+  Child survey({"survey", "ask", folder.path().string(), "--port", "0", "--condition", "real",
+                "--json", json});
   ASSERT_TRUE(survey.Says("(works in one browser only)")) << survey.errors();
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   if (!test::StatusOf(getpid(), "Seccomp").empty()) {
@@ -52,6 +54,8 @@ TEST(SurveyProcess, StoresAnAnswerWithoutFurtherRights) {
   std::ifstream file(std::filesystem::directory_iterator(folder.path())->path());
   const std::string stored{std::istreambuf_iterator<char>(file), {}};
   EXPECT_NE(stored.find("from a test"), std::string::npos) << stored;
+  std::ifstream result(json);
+  EXPECT_EQ(nlohmann::json::parse(result)["stored"], true);
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ export interface RunQuantities {
   tick: number;  // counts from process start
   runTime: number;  // [s] simulated time since RUN began
   wallNs: number;  // [ns] monotonic clock at the tick's start; 0 in virtual time
-  state: RunState;
+  state: RunState;  // state of the run
   cause: StopCause;  // cause of the stop, until reset
   causeHand: number;  // 0 left, 1 right, -1 neither or both
   action: number;  // index in the operator's script; -1 none
@@ -63,7 +63,7 @@ export interface RunQuantities {
   guardAltered: boolean;  // the guard changed the command
   relativeSlack: number[];  // [m/s, rad/s] slack of the relative-pose task
   elbowDistance: number;  // [m] distance of the nearest link pair; inf without pairs and before the first QP
-  stageUs: number[];  // [us]
+  stageUs: number[];  // [us] computing time of the stage (tick: of all)
   sentNs: number;  // [ns] monotonic clock when the server sent it
   recording: boolean;  // the run is recorded
 }
@@ -104,16 +104,16 @@ export const kRunFields = {
 } as const;
 
 export interface HandQuantities {
-  present: boolean;
+  present: boolean;  // the arm exists
   gripping: boolean;  // simulated operator: grips; otherwise: the state is RUN
   armFault: boolean;  // the arm reports a fault
   real: Pose;  // [m] in W
   virtual: Pose;  // [m] in W
   wrench: number[];  // [N, N m] in W wrench of the hand on the handle, about H
   coupling: number[];  // [N, N m] in W wrench of the virtual coupling on D
-  armQ: number[];  // [rad] measured
+  armQ: number[];  // [rad] joint positions of the arm, measured
   sensorAge: number;  // [s] age of the sensor's sample
-  manipulability: number;  // translational
+  manipulability: number;  // translational manipulability of the arm
   peak: number[];  // [N, N m] largest force and torque since the previous state
   keepsPower: boolean;  // the arm reports power although it should have been cut
 }
