@@ -262,11 +262,11 @@ constexpr void VisitQp(V& v, R& r) {
   v.Value({"iterations", "", "", "iterations of the solver"}, r.qp_iterations);
   v.Twist({"relative_slack", "", "", "slack of the relative-pose task", "relative_slack"},
           r.relative_slack);
-  v.Value({"elbow_slack", "m/s", "", "amount by which the QP relaxed the worst limit"},
+  v.Value({"limit_slack", "m/s", "", "amount by which the QP relaxed the worst limit"},
           r.limit_slack);
-  v.Value({"elbow_distance", "m", "",
+  v.Value({"link_distance", "m", "",
            "distance of the nearest link pair; inf without pairs and before the first QP",
-           "elbow_distance"},
+           "link_distance"},
           r.link_distance);
   v.Value({"kkt_residual", "", "", "largest residual of the optimality conditions, scaled"},
           r.kkt_residual);

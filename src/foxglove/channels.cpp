@@ -81,9 +81,9 @@ FoxgloveChannel Tracking(const Scenario& scenario) {
                    {"left", hand},
                    {"right", hand},
                    {"threshold_m", Number()},
-                   {"elbow_distance_m", Number()},
+                   {"link_distance_m", Number()},
                    {"security_distance_m", Number()}},
-                  {"left", "right", "elbow_distance_m"}),
+                  {"left", "right", "link_distance_m"}),
           [threshold, security_distance](const TickRecord& r, std::uint64_t ns) {
             Json message = {{"timestamp", Time(ns)}};
             for (std::size_t h = 0; h < kHands; ++h) {
@@ -94,7 +94,7 @@ FoxgloveChannel Tracking(const Scenario& scenario) {
                                         {"rotation_rad", error.tail<3>().norm()}};
             }
             message["threshold_m"] = threshold;
-            if (std::isfinite(r.link_distance)) message["elbow_distance_m"] = r.link_distance;
+            if (std::isfinite(r.link_distance)) message["link_distance_m"] = r.link_distance;
             message["security_distance_m"] = security_distance;
             return message;
           }};

@@ -109,7 +109,7 @@ std::string ForceWords(const RunData& run) {
   }
   if (text.empty()) return "";
   text += " (threshold " + Round(ThresholdOf(run, Parameter::kForceThreshold)) + " N).";
-  const auto nearest = run.summary.Get<double>("elbow_distance_m.min");
+  const auto nearest = run.summary.Get<double>("link_distance_m.min");
   if (std::isfinite(nearest))
     text += " The smallest distance between links of the two arms was " + Significant(nearest) +
             " m (limit " + Round(run.info.scenario.rendering.security_distance) + " m).";

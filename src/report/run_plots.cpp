@@ -102,7 +102,7 @@ void AddPair(const Runs& runs, const std::string& title, const std::string& labe
 
 bool HasLinkPairs(const Runs& runs) {
   return std::any_of(runs.begin(), runs.end(), [](const RunCurves& curves) {
-    return std::isfinite(curves.run().summary.Get<double>("elbow_distance_m.min"));
+    return std::isfinite(curves.run().summary.Get<double>("link_distance_m.min"));
   });
 }
 

@@ -67,7 +67,7 @@ TEST(Summary, HasTheContractsNames) {
   const auto json = nlohmann::json::parse(SummaryJson(builder.summary()));
   for (const char* name : {"deadlines",
                            "duration_s",
-                           "elbow_distance_m",
+                           "link_distance_m",
                            "energy",
                            "guidance",
                            "lead_s",

@@ -198,7 +198,7 @@ TEST(FuzzSeeds, HaveTicks) {
   }
   constexpr const char* kRemedy =
       "replace the seed `cut`: run recording_sample FOLDER 5; take the beginning of its "
-      "sample.mcap (head -c 30000), which ends in the middle of predictor.copy, and pack it with "
+      "sample.mcap (head -c 32000), which ends in the middle of predictor.copy, and pack it with "
       "tests/fuzz/pack.sh";
   EXPECT_GE(read, 5U) << kRemedy;
   EXPECT_EQ(mended, read) << kRemedy;

@@ -93,7 +93,7 @@ TEST(Frame, HasTheFieldsOfTheProtocol) {
       {"object", "f32", 7},
       {"movables", "f32", 7 * kMaxMovables},
       {"end_effector", "f32", 7},
-      {"elbow_distance", "f64", 1},
+      {"link_distance", "f64", 1},
       {"relative_slack", "f32", 6},
       {"stage_us", "f32", 8},
       {"parameters", "f32", 5},
@@ -186,7 +186,7 @@ TEST(Frame, CarriesTheRecord) {
   EXPECT_EQ(v["right_virtual"][2], 6);
   EXPECT_EQ(v["left_wrench"][5], -3);
   EXPECT_EQ(v["right_arm_q"][9], 0.25);
-  EXPECT_EQ(v["elbow_distance"][0], std::numeric_limits<double>::infinity());
+  EXPECT_EQ(v["link_distance"][0], std::numeric_limits<double>::infinity());
   EXPECT_EQ(v["stage_us"][7], 14.5);
   EXPECT_EQ(v["parameters"], (std::vector<double>{1.5, 0.5, 2, 25, 4}));
   EXPECT_EQ(v["guard_altered"][0], 1);

@@ -62,7 +62,7 @@ export interface RunQuantities {
   qpFailed: boolean;  // no verified solution
   guardAltered: boolean;  // the guard changed the command
   relativeSlack: number[];  // [m/s, rad/s] slack of the relative-pose task
-  elbowDistance: number;  // [m] distance of the nearest link pair; inf without pairs and before the first QP
+  linkDistance: number;  // [m] distance of the nearest link pair; inf without pairs and before the first QP
   stageUs: number[];  // [us] computing time of the stage (tick: of all)
   sentNs: number;  // [ns] monotonic clock when the server sent it
   recording: boolean;  // the run is recorded
@@ -97,7 +97,7 @@ export const kRunFields = {
   qp_failed: ['qpFailed', 'flag', 'u8', 1],
   guard_altered: ['guardAltered', 'flag', 'u8', 1],
   relative_slack: ['relativeSlack', 'numbers', 'f32', 6],
-  elbow_distance: ['elbowDistance', 'number', 'f64', 1],
+  link_distance: ['linkDistance', 'number', 'f64', 1],
   stage_us: ['stageUs', 'numbers', 'f32', 8],
   sent_ns: ['sentNs', 'number', 'u64', 1],
   recording: ['recording', 'flag', 'u8', 1],

@@ -73,7 +73,7 @@ void AddForces(const ReproducedRun& run, std::vector<ReproducedNumber>* numbers)
     add(NumberOfMetric(run, "wrench." + hand + ".torque_nm", hand + " hand, torque"));
   }
   add(NumberOf(run, "smallest distance of the elbows",
-               run.data.summary.Get<double>("elbow_distance_m.min"), "m"));
+               run.data.summary.Get<double>("link_distance_m.min"), "m"));
 }
 
 std::string PictureHtml(const ReproducedImage& image, const std::string& words) {

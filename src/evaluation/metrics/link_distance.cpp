@@ -14,7 +14,7 @@ class LinkDistance final : public Metric {
     if (record.ran) min_ = std::min(min_, record.link_distance);
   }
   void AppendTo(std::vector<Result>* results) const override {
-    results->push_back({.path = "elbow_distance_m.min",
+    results->push_back({.path = "link_distance_m.min",
                         .group = "Nearest link pair",
                         .unit = units::kMetre,
                         .meaning = "smallest distance of the nearest link pair",

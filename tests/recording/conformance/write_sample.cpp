@@ -151,8 +151,8 @@ Json TickJson(const TickRecord& r) {
                  {"guard_altered", r.guard_altered},
                  {"iterations", r.qp_iterations},
                  {"relative_slack", TwistJson(r.relative_slack)},
-                 {"elbow_slack", Number(r.limit_slack)},
-                 {"elbow_distance", Number(r.link_distance)},
+                 {"limit_slack", Number(r.limit_slack)},
+                 {"link_distance", Number(r.link_distance)},
                  {"kkt_residual", Number(r.kkt_residual)}}},
                {"/timing", timing}};
   if (r.hands[1].present) json["/hands/right"] = HandJson(r.hands[1]);

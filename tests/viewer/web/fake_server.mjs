@@ -462,7 +462,7 @@ export class FakeServer {
       events: this.options.events ?? 0, latest_event: 0, cobot_stop: 0, attachment: this.options.attachment ?? 0,
       cobot_q: this.cobotQ, object: seven(object), end_effector: seven(flange),
       movables: (this.options.movables ?? []).flatMap(({pose: {p, q}}) => [...p, ...q]),
-      elbow_distance: 0.47 + 0.05 * Math.sin(this.runTime), relative_slack: [0, 0, 0, 0, 0, 0],
+      link_distance: 0.47 + 0.05 * Math.sin(this.runTime), relative_slack: [0, 0, 0, 0, 0, 0],
       stage_us: [0.4, 0.3, 5.5, 4.2, 0.3, 0.2, 0.3, 11 + 1.2 * Math.sin(time / 3e8)],
       parameters: this.parameters, recording: this.recording ? 1 : 0,
     };

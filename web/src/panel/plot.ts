@@ -77,8 +77,8 @@ export const kPlots: PlotSpec[][] = [
   [{
     id: 'elbow', title: 'Elbows', unit: 'm', digits: 2, least: 0.6,
     series: [
-      {label: 'apart', name: 'elbow_distance', color: '#23b5a4', value: (s) => finite(s.elbowDistance)},
-      limit('elbow_distance', 0, (s, spec) => (Number.isFinite(s.elbowDistance) ?
+      {label: 'apart', name: 'link_distance', color: '#23b5a4', value: (s) => finite(s.linkDistance)},
+      limit('link_distance', 0, (s, spec) => (Number.isFinite(s.linkDistance) ?
         spec.thresholds.security_distance : null)),
     ],
   }],
