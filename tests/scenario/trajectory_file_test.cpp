@@ -34,6 +34,17 @@ class TrajectoryFile : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
+TEST_F(TrajectoryFile, BelongsToEachControllerWhoseSetPointMoves) {
+  for (const char* type : {"admittance", "hybrid_force_position"}) {
+    const Scenario scenario =
+        Load("time,x,y,z\n2,0.1,0,0\n",
+             {std::string("cobot.controller={type: ") + type + ", trajectory_file: path.csv}"});
+    const YamlNode* trajectory = scenario.cobot.controller.parameters.Find("trajectory");
+    ASSERT_NE(trajectory, nullptr) << type;
+    EXPECT_EQ(trajectory->items.size(), 1u) << type;
+  }
+}
+
 TEST_F(TrajectoryFile, GivesTheSameWaypointsAsTheScenario) {
   const Scenario expected = LoadScenario(
       folder_ / "box.yaml", {"cobot.controller.trajectory=[{time: 1, xyz: [0.1, 0, -2e-2]}, "
