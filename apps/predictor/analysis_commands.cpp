@@ -73,6 +73,38 @@ void AddCompare(CLI::App* app, Request* r) {
   compare->footer("Example:\n  predictor compare real_*.mcap --with emulated_*.mcap\n");
 }
 
+// What the recording does not show about the work.
+void AddWork(CLI::App* evaluate, EvaluateOptions* o) {
+  evaluate
+      ->add_flag("--repeated", o->repeated,
+                 "In the real work, postures recur at least four times a minute")
+      ->group("Work");
+  evaluate
+      ->add_flag("--held", o->held, "In the real work, postures are held for more than a minute")
+      ->group("Work");
+  AddOption(evaluate, "Work", "--duration", &o->lifting, "1h|2h|8h",
+            "Lifts like those of the run go on for at most this time (NIOSH's three durations)")
+      ->check(CLI::IsMember({"1h", "2h", "8h"}))
+      ->capture_default_str();
+  AddOption(evaluate, "Work", "--coupling", &o->coupling, "good|fair|poor",
+            "How well the hands can grip the object, for NIOSH and REBA")
+      ->check(CLI::IsMember({"good", "fair", "poor"}))
+      ->capture_default_str();
+  AddOption(evaluate, "Work", "--grip-effort", &o->grip_effort, "NUMBER",
+            "Effort with which the hands grip, from 0 (extremely easy) to 10 (extremely hard), for "
+            "DUET; no sensor measures it")
+      ->check(CLI::Range(0.0, 10.0));
+  AddOption(evaluate, "Work", "--limits", &o->limits, "FILE.csv",
+            "Limits of postures, loads or muscles that you take from a standard, in the form of "
+            "assets/limits_template.csv (repeatable)")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+  AddOption(evaluate, "Work", "--contact-limits", &o->contact_limits, "FILE.csv",
+            "Limits of force on the body for unintended contact, in the form of "
+            "assets/contact_limits_template.csv");
+}
+
 void AddEvaluate(CLI::App* app, Request* r) {
   EvaluateOptions* o = &r->evaluate;
   CLI::App* evaluate = AddCommand(
@@ -94,38 +126,11 @@ void AddEvaluate(CLI::App* app, Request* r) {
                  "Also evaluate 64 possible postures and bodies, for intervals and probabilities "
                  "[default: on]")
       ->group("Person");
-  evaluate
-      ->add_flag("--repeated", o->repeated,
-                 "In the real work, postures recur at least four times a minute")
-      ->group("Work");
-  evaluate
-      ->add_flag("--held", o->held, "In the real work, postures are held for more than a minute")
-      ->group("Work");
-  AddOption(evaluate, "Work", "--duration", &o->lifting, "1h|2h|8h",
-            "Lifts like those of the run go on for at most this time (NIOSH's three durations)")
-      ->check(CLI::IsMember({"1h", "2h", "8h"}))
-      ->capture_default_str();
-  AddOption(evaluate, "Work", "--coupling", &o->coupling, "good|fair|poor",
-            "How well the hands can grip the object, for NIOSH and REBA")
-      ->check(CLI::IsMember({"good", "fair", "poor"}))
-      ->capture_default_str();
-  AddOption(evaluate, "Work", "--grip-effort", &o->grip_effort, "NUMBER",
-            "Effort with which the hands grip, from 0 (extremely easy) to 10 (extremely hard), for "
-            "DUET; no sensor measures it")
-      ->check(CLI::Range(0.0, 10.0));
   AddOption(
       evaluate, "Person", "--arm-model", &o->arm_model, "PATH",
       "Use the arm muscles of MyoArm instead of the built-in model: the folder myo_sim/models of "
       "the package myo-sim, or one MJCF file with the whole arm");
-  AddOption(evaluate, "Work", "--limits", &o->limits, "FILE.csv",
-            "Limits of postures, loads or muscles that you take from a standard, in the form of "
-            "assets/limits_template.csv (repeatable)")
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
-  AddOption(evaluate, "Work", "--contact-limits", &o->contact_limits, "FILE.csv",
-            "Limits of force on the body for unintended contact, in the form of "
-            "assets/contact_limits_template.csv");
+  AddWork(evaluate, o);
   AddOption(evaluate, "Output", "-o,--output", &o->page, "FILE.html",
             "Page to write [default: NAME.person.html]. With several recordings, -o, --csv and "
             "--json name folders");

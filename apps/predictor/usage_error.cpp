@@ -29,10 +29,14 @@ std::string Text(const std::string& error, const std::string& hint) {
 // Returns the parser's message in this program's wording. The message names arguments as the help
 // does, for example SCENARIO.
 std::string Rephrased(std::string message) {
-  static const std::array<std::pair<std::regex, const char*>, 6> kSentences = {{
+  static const std::array<std::pair<std::regex, const char*>, 7> kSentences = {{
       {std::regex("(.*) is required"), "$1 is missing."},
       {std::regex("Could not convert: (.*) = (.*)"), "\"$2\" is not a valid value of $1."},
       {std::regex("(.*): \\d+ required .* missing"), "$1 needs a value."},
+      // Without the zeros at the end of 2.500000.
+      {std::regex("(.*): Value (.*) not in range (-?\\d+(?:\\.\\d*[1-9])?)\\.?0* to "
+                  "(-?\\d+(?:\\.\\d*[1-9])?)\\.?0*"),
+       "$1 must be $3 to $4, not $2."},
       {std::regex("(.*): Value (.*) not in range (.*) to (.*)"), "$1 must be $3 to $4, not $2."},
       {std::regex("(.*): (.*) not in \\{(.*)\\}"), "$1 must be one of $3, not $2."},
       {std::regex("(.*) requires (.*)"), "$1 requires $2."},

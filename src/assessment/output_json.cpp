@@ -227,6 +227,24 @@ Json WorksheetSchema(const WorksheetKind& kind) {
       kind.name);
 }
 
+Json PersonSchema() {
+  return schema::Object(
+      {{"simulated", schema::Value("boolean", "whether the operator was simulated")},
+       {"operator", schema::Value("string", "virtual, browser or person")},
+       {"height_m", schema::Value("number", "height of the body [m]")},
+       {"mass_kg", schema::Value("number", "mass of the body [kg]")},
+       {"sex", schema::Value("string", "female or male")},
+       {"participant", schema::ValueOrNull("object", "pseudonym, consent and handedness")},
+       {"reached", schema::Value("number",
+                                 "share of time in which the body reaches the "
+                                 "handles, 0 … 1")},
+       {"reached_by_possible_postures",
+        schema::ValueOrNull("number", "share of time, averaged over the possible postures, 0 … 1")},
+       {"largest_miss_m",
+        schema::Value("number", "largest distance by which a hand misses its handle [m]")}},
+      "the person");
+}
+
 Json ListSchema(const char* meaning, const Json& example) {
   Json properties = Json::object();
   for (const auto& [key, value] : example.items())
@@ -278,23 +296,7 @@ std::string AssessmentSchema() {
        {"held_s",
         schema::Value("number",
                       "part of it in which a hand held a handle; only this part is judged [s]")},
-       {"person",
-        schema::Object(
-            {{"simulated", schema::Value("boolean", "whether the operator was simulated")},
-             {"operator", schema::Value("string", "virtual, browser or person")},
-             {"height_m", schema::Value("number", "height of the body [m]")},
-             {"mass_kg", schema::Value("number", "mass of the body [kg]")},
-             {"sex", schema::Value("string", "female or male")},
-             {"participant", schema::ValueOrNull("object", "pseudonym, consent and handedness")},
-             {"reached", schema::Value("number",
-                                       "share of time in which the body reaches the "
-                                       "handles, 0 … 1")},
-             {"reached_by_possible_postures",
-              schema::ValueOrNull("number",
-                                  "share of time, averaged over the possible postures, 0 … 1")},
-             {"largest_miss_m",
-              schema::Value("number", "largest distance by which a hand misses its handle [m]")}},
-            "the person")},
+       {"person", PersonSchema()},
        {"quantities", schema::Object(quantities, "values over time")},
        {"worksheets", schema::Object(worksheets, "scores of observational worksheets")},
        {"limits", ListSchema("limits of the files that were given", ToJson(LimitResult{}))},

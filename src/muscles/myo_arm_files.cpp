@@ -51,9 +51,17 @@ void RepairMiddleDeltoid(mjSpec* spec) {
     }
 }
 
+std::string FirstLineOf(const Message& error) {
+  const std::string text = error.data();
+  return Printable(text.substr(0, text.find('\n')));
+}
+
 MyoModel Compile(MyoSpec spec, const Message& error, const std::filesystem::path& source) {
   if (!spec)
-    throw InputError(source.string(), "MuJoCo cannot read this model: " + Printable(error.data()));
+    throw InputError(source.string(),
+                     "MuJoCo cannot read this model. Give the folder myo_sim/models of the package "
+                     "myo-sim, or one MJCF file with the whole arm. The reason is: " +
+                         FirstLineOf(error));
   DeletePictures(spec.get());
   RepairMiddleDeltoid(spec.get());
   MyoModel model(mj_compile(spec.get(), nullptr));

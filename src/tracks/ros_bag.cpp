@@ -70,7 +70,8 @@ class McapBag {
   McapBag(const std::string& file, Topics* topics) : file_(file), topics_(topics) {}
 
   void Read(std::string_view bytes) {
-    if (!bytes.starts_with(mcap::kMagic)) Fail("This is not an MCAP file.");
+    if (!bytes.starts_with(mcap::kMagic))
+      Fail("This is not an MCAP file. Give a recording of ROS 2 in MCAP or SQLite, or a CSV file.");
     ReadRecords(bytes.substr(mcap::kMagic.size()), false);
   }
 

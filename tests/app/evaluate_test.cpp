@@ -64,6 +64,7 @@ TEST_F(Evaluate, UsesTheStatedWork) {
     Child refused({"evaluate", recording, wrong[0], wrong[1], "--force"});
     EXPECT_EQ(refused.Wait(), 2) << wrong[0];
     EXPECT_NE(refused.errors().find(wrong[0]), std::string::npos) << refused.errors();
+    EXPECT_EQ(refused.errors().find(".0"), std::string::npos) << refused.errors();
   }
 }
 

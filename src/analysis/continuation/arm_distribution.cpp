@@ -46,8 +46,11 @@ nlohmann::json ParseArm(const std::string& file) {
   if (text.size() > kMaxFile) throw InputError(file, "The file is larger than 1 MiB.");
   try {
     return nlohmann::json::parse(text);
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError(file, std::string("This is not JSON: ") + Printable(error.what()));
+  } catch (const nlohmann::json::exception&) {
+    throw InputError(
+        file,
+        "This is not JSON. Give a file that `predictor identify-arm` wrote with --left "
+        "or --right.");
   }
 }
 
