@@ -69,8 +69,9 @@ function gauges(t, lean, wrenches) {
 }
 
 // Returns the message `person` at the run time t [s]. `status` is 'judged', or the reason why
-// nothing is judged. `head` is the origin of the head.
-export function personMessage(spec, t, tick, hands, wrenches, status = 'judged', head = 'modelled') {
+// nothing is judged. `head` is the origin of the head. `range` is the largest
+// load of the lower back as a share of the range of LiFFT.
+export function personMessage(spec, t, tick, hands, wrenches, status = 'judged', head = 'modelled', range = 0.4) {
   const judged = status === 'judged';
   const {points, lean} = pointsOf(spec.viewpoint, hands);
   const known = gauges(t, lean, wrenches);
@@ -85,7 +86,7 @@ export function personMessage(spec, t, tick, hands, wrenches, status = 'judged',
     head: judged ? head : 'modelled', reached: true, miss: 0, sampled_reached: 1, warnings: warns ? ['left_shoulder'] : [],
     points: judged ? points : nothing(points),
     parts: {
-      lower_back: {...part(known.lower_back_compression.value / 3400, null), load_over_range: 0.4},
+      lower_back: {...part(known.lower_back_compression.value / 3400, null), load_over_range: range},
       left_shoulder: part(known.left_shoulder_use.value, 0.97), right_shoulder: part(known.right_shoulder_use.value, 0.96),
       left_elbow: elbow(known.left_elbow_use.value, 0.99), right_elbow: elbow(known.right_elbow_use.value, 0.98),
     },

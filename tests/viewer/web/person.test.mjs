@@ -60,6 +60,14 @@ test('gauges, scores, damage and fatigue show the values in the message and thei
   for (const origin of ['measured', 'modelled', 'standard', 'operator is simulated']) assert.ok(words.includes(origin), origin);
 });
 
+test('damage beyond the range of its method is marked', async () => {
+  const damage = page.locator('#person-damage');
+  server.liftRange = 1.2;
+  await waitForText(damage, /lower back [\d.e-]+ % \(beyond the range of the method\)/);
+  server.liftRange = 0.4;
+  await waitForText(damage, /lower back [\d.e-]+ %, left/);
+});
+
 test('the card states whether the headset measures the head', async () => {
   const head = page.locator('#person-head');
   await waitForText(head, /^The head is modelled\.$/);
