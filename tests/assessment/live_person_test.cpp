@@ -105,6 +105,10 @@ TEST(LivePerson, EndsWithTheDamageAndFatigueOfTheRecordedRun) {
     EXPECT_NEAR(last.parts[i].damage / a.damage[i].per_run, 1, 0.01) << i;
     EXPECT_NEAR(last.parts[i].day_share / a.damage[i].day_share, 1, 0.01) << i;
   }
+  // Only LiFFT states up to which load it is valid.
+  EXPECT_GT(a.damage[0].load_over_range, 0);
+  EXPECT_NEAR(last.parts[0].load_over_range / a.damage[0].load_over_range, 1, 0.01);
+  EXPECT_TRUE(std::isnan(last.parts[1].load_over_range));
   ASSERT_EQ(a.fatigue.size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_LT(a.fatigue[i].capacity, 1);

@@ -240,7 +240,8 @@ TEST_F(MyoArmTest, RefusesWhatIsNotMyoArm) {
   };
   expect(ErrorOf("/nowhere"), "cannot be read");
   expect(ErrorOf(folder_.path()), "myoarm_r_chain.xml");
-  expect(ErrorOf(Write("<mujoco>")), "MuJoCo cannot read this model");
+  expect(ErrorOf(Write("<mujoco>")), "MuJoCo cannot read this model. Give the folder");
+  EXPECT_EQ(ErrorOf(Write("<mujoco>")).find("\\x0a"), std::string::npos);
   expect(ErrorOf(Write("<mujoco/>")), "no joint \"elv_angle\"");
   std::string text = SmallArm();
   text.replace(text.find("general name=\"BRA\""), 18, "general name=\"BRB\"");

@@ -151,7 +151,8 @@ TEST_F(Import, RefusesADamagedBag) {
   ExpectWords(ErrorOf([&] { ReadSeries(Write("a.mcap", Bag("", 1))); }), {"a.mcap", "CRC"});
   ExpectWords(ErrorOf([&] { ReadSeries(Write("a.mcap", Bag("lz4", 0))); }),
               {"lz4", "mcap compress"});
-  ExpectWords(ErrorOf([&] { ReadSeries(Write("a.mcap", "no bag at all")); }), {"not an MCAP"});
+  ExpectWords(ErrorOf([&] { ReadSeries(Write("a.mcap", "no bag at all")); }),
+              {"not an MCAP", "or a CSV file"});
   ExpectWords(ErrorOf([&] { ReadSeries(Write("a.db3", "no bag at all, but 20 bytes")); }),
               {"a.db3", "SQLite"});
   const std::string whole = Bag("", 0);
