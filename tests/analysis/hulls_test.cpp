@@ -50,6 +50,8 @@ TEST(HullWarnings, NameTheMeshesThatCollideAndTheirExcess) {
       << warnings[0];
   s.environment.fixtures.clear();
   EXPECT_TRUE(HullWarnings(s).empty());
+  s.cobot.touches = {"object"};
+  EXPECT_EQ(HullWarnings(s).size(), 1u);
 }
 
 TEST(HullWarnings, AreAbsentForPrimitivesAndForAPanda) {

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "analysis/scenarios.h"
 #include "models/arm_model.h"
+#include "support/text.h"
 
 namespace predictor {
 namespace {
@@ -97,6 +100,36 @@ TEST(Start, OfAnObjectInsideTheCobotWarns) {
   EXPECT_LT(start.gaps.links.distance, -0.01);
   EXPECT_FALSE(start.is_outside);
   EXPECT_EQ(StartWarnings(start).size(), 2u);  // the wrist, and the end-effector itself
+}
+
+// Joints connect neighbouring links of the Panda, and the object hangs at link 8, which is fixed to
+// link 7.
+TEST(Start, ListsThePairsOfCobotTouchesWithTheirReasons) {
+  Scenario s = Box();
+  std::string text;
+  AddStart(Describe(s, World(s)), &text);
+  EXPECT_FALSE(Contains(text, "cobot.touches"));
+  s.cobot.touches = {"object", "cobot"};
+  const StartReport start = Describe(s, World(s));
+  text.clear();
+  AddStart(start, &text);
+  EXPECT_TRUE(Contains(text,
+                       "  cobot.touches    the object can touch panda_link0, panda_link1, "
+                       "panda_link2, panda_link3, panda_link4, panda_link5, panda_link6\n"))
+      << text;
+  EXPECT_TRUE(Contains(text, "  cobot.touches    panda_link5 can touch panda_link7\n")) << text;
+  EXPECT_TRUE(
+      Contains(text, "  no contact       connected by a joint: panda_link0 and panda_link1, "))
+      << text;
+  EXPECT_TRUE(
+      Contains(text, "  no contact       hand and what it holds: panda_link7 and the object\n"))
+      << text;
+  // The nearest link that does not hold the object was found by another class.
+  double nearest = kFarthestPair;
+  for (const ContactPair& pair : start.pairs)
+    if (pair.other.empty() && pair.state == PairState::kCanTouch)
+      nearest = std::min(nearest, pair.distance);
+  EXPECT_NEAR(nearest, start.gaps.links.distance, 1e-6);
 }
 
 }  // namespace
