@@ -200,6 +200,27 @@ TEST_F(ReproduceTest, AblationOfTheBarIsInTheNumbersFile) {
   expect_same("without relative_target", {"rendering.formulation_except=[relative_target]"});
 }
 
+// In each constructed start, our formulation completes the task, and a removed repair is missed.
+TEST_F(ReproduceTest, EachRepairActsInItsConstructedStart) {
+  options_.only = "repairs";
+  const ReproducedExperiment e = Reproduce(options_).experiments.at(0);
+  for (const ReproducedNumber& n : e.numbers) {
+    if (!n.quantity.ends_with(", ours")) continue;
+    EXPECT_FALSE(n.condition.starts_with("stop")) << n.quantity;
+    if (n.condition != "left handle") continue;
+    EXPECT_LT(n.mean, 5) << n.quantity;  // [mm]
+  }
+  EXPECT_LT(Find(e, "opposite quaternions, without nearer_hemisphere", "stop by tracking").mean,
+            30);
+  EXPECT_EQ(Find(e, "elbows at d_s, without soft_rows", "QPs without a solution").mean, 3);
+  EXPECT_LT(Find(e, "elbows at d_s, without approach_parabola", "stop by elbow").mean, 8);
+  EXPECT_GT(Find(e, "elbows at d_s, without damper_end", "left handle").largest,
+            10 * Find(e, "elbows at d_s, ours", "left handle").largest);
+  EXPECT_GT(Find(e, "fast joints, without speed_reserve", "right handle seen from the left").mean,
+            1.3 * Find(e, "fast joints, ours", "right handle seen from the left").mean);
+  ExpectAsInNumbersFile(e);
+}
+
 TEST_F(ReproduceTest, NumbersFileIsWhatTheProgramComputesSoak) {
   std::vector<std::string> names = {"bar_circle"};
   if (InFull()) names = {"bar_circle", "box_18kg", "ablation", "tuning", "arms", "circle"};

@@ -86,6 +86,7 @@ ReproducedExperiment ReproduceSafety(ReproduceRuns* runs);
 ReproducedExperiment ReproduceCircle(ReproduceRuns* runs);
 ReproducedExperiment ReproduceRelativePose(ReproduceRuns* runs);
 ReproducedExperiment ReproduceAblation(ReproduceRuns* runs);
+ReproducedExperiment ReproduceRepairs(ReproduceRuns* runs);
 ReproducedExperiment ReproduceTuning(ReproduceRuns* runs);
 ReproducedExperiment ReproduceArms(ReproduceRuns* runs);
 ReproducedExperiment ReproduceResponsiveness(ReproduceRuns* runs);
