@@ -182,8 +182,8 @@ def quantities_page(quantities):
              "The numbers of each tick, by the names that `predictor export data` gives them. "
              "A recording contains the numbers of those arms, joints and objects that exist. "
              "The type is that of ROS 2 messages, and flags and enumerations are integers. "
-             "The frame is that whose axes the components refer to; S is the sensor's frame. "
-             "[Recordings](../recording.md) describes the file format, which also names the values of enumerations."]
+             "The components refer to the axes of this frame. In this table, S is the frame of the sensor. "
+             "[Recordings](../recording.md) describes the file format. The schemas in a recording name the values of enumerations."]
     for group, rows in groups.items():
         parts += [f"## {group}", table(("name", "type", "unit", "frame", "meaning"), rows)]
     return "\n\n".join(parts)

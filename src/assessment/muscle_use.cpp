@@ -200,8 +200,8 @@ void AddMuscleWords(const NominalChain& chain, std::vector<std::string>* warning
           "arm in the model: up to %.1f N·m are missing, and the activations shown are too low.",
           100 * weak / judged, HandName(hand), most));
     if (raised > 0)
-      gaps->push_back({std::string("strength, torques and muscles of the ") + HandName(hand) +
-                           " shoulder for " +
+      gaps->push_back({std::string("strength and torques of the ") + HandName(hand) +
+                           " shoulder, and muscles and stiffness of this arm, for " +
                            Formatted("%.1f %% of the time", 100 * raised / (judged + raised)),
                        "the upper arm is raised above 90°, where models of the shoulder disagree "
                        "with measurements"});

@@ -76,7 +76,7 @@ void AppendSentences(const char* title, const std::vector<T>& list, std::string*
 std::string DamageWords(const Lift& lift) {
   if (!lift.moment) return "";
   return Formatted(
-      " This lift uses %.3g %% of a reference day (LiFFT, largest moment %.0f N·m%s).",
+      " This movement uses %.3g %% of a reference day (LiFFT, largest moment %.0f N·m%s).",
       100 * *lift.day_share, *lift.moment,
       lift.outside_lifft() ? ", beyond the range of the method, which is 100 N·m" : "");
 }

@@ -88,7 +88,7 @@ std::string ControlledScene::Missing(HazardNeeds needs) const {
       return "cobot.controller does not use a wrist sensor";
     case HazardNeeds::kSetPoint:
       if (controller_->has_set_point()) break;
-      return "cobot.controller has no Cartesian set-point";
+      return "cobot.controller has no set-point that an event can shift";
     case HazardNeeds::kSprings:
       if (controller_->has_springs()) break;
       return "cobot.controller has no springs and dampers";

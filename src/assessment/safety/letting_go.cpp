@@ -101,8 +101,9 @@ std::vector<std::string> ClampingFixtures(const Scenario& scenario) {
   std::vector<std::string> names;
   if (scenario.environment.floor) names.emplace_back("the floor");
   if (scenario.environment.table) names.emplace_back("the table");
+  // Keep-out volumes are not bodies.
   for (const FixtureSpec& fixture : scenario.environment.fixtures)
-    if (fixture.Touches("object") || fixture.Touches("cobot"))
+    if (!fixture.keep_out && (fixture.Touches("object") || fixture.Touches("cobot")))
       names.push_back(fixture.name.empty() ? "a " + NameOf(fixture.shape) : fixture.name);
   return names;
 }
