@@ -6,7 +6,7 @@
 
 namespace predictor {
 
-// A name must precede the names that it begins with, so that `kick foxglove` is not a bad `kick N`.
+// A command with a text must follow those whose names begin with its name and a space.
 struct ConsoleCommandTable {
   using C = ConsoleCommands;
   static constexpr C::Command kRows[] = {

@@ -183,7 +183,8 @@ int EvaluateCommand(const EvaluateOptions& options) {
   for (const std::string& recording : options.recordings)
     EvaluateOne(OptionsFor(recording, options), &lifts, &minutes);
   const assessment::LiftingJob job = assessment::JobOf(lifts, minutes);
-  if (job.lifts > 1) options.Print("\nAll recordings: " + Sentence(job) + "\n");
+  if (job.lifts > 1)
+    options.Print("\nIf one person does the work of all recordings: " + Sentence(job) + "\n");
   return kFinished;
 }
 

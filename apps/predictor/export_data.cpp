@@ -213,7 +213,10 @@ int ExportDataCommand(const RecordingOptions& options) {
   std::uint64_t ticks = 0, rows = 0;
   bool good = true;
   for (bool more = true; more && good; more = NextOrDamage(&reader, &record, &damage)) {
-    if (ticks++ % options.every == 0) text += Row(columns, record), ++rows;
+    if (ticks++ % options.every == 0) {
+      text += Row(columns, record);
+      ++rows;
+    }
     if (text.size() < 1U << 16U) continue;
     good = out.Add(text);
     text.clear();

@@ -190,7 +190,8 @@ int SurveyAskCommand(const SurveyOptions& options) {
     TheScreen().Print("The answer was stored in " + to.folder.string() + ".");
   else
     TheScreen().Print("No answer was given.");
-  options.WriteJson(Json{{"stored", stored}, {"folder", to.folder.string()}}.dump(2) + "\n");
+  const Json result = {{"stored", stored}, {"folder", to.folder.string()}};
+  options.WriteJson(result.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   return kFinished;
 }
 

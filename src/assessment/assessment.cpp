@@ -310,8 +310,9 @@ void AddWords(const Scenario& scenario, const WorkPattern& work, Assessment* a) 
       std::string("For RULA and REBA, the postures are ") + (work.repeated ? "" : "not ") +
           "repeated four times a minute and " + (work.held ? "" : "not ") +
           "held for more than a minute.",
-      std::string("The lifting equations assume lifts at the rate of this run, ") +
-          DurationWords(work.lifting) + ", and " + CouplingWords(work.coupling) + " handles.",
+      std::string("NIOSH's equation assumes lifts at the rate of this run, ") +
+          DurationWords(work.lifting) + ", and " + CouplingWords(work.coupling) +
+          " handles. REBA assumes the same handles. LM-MMH assumes a day of lifts at this rate.",
       std::string("Strength is the mean for the person's sex") +
           (work.strength == WorkPattern().strength ? "" : ", times operator.body.strength") +
           ", for flexion and extension only."};
@@ -363,7 +364,8 @@ void AddHandDamage(const Scenario& scenario, std::span<const PersonSample> all,
         ergonomics::kHandTool, std::string(HandName(hand)) + " hand and forearm",
         static_cast<double>(exertions) * ergonomics::HandDamage(*work.grip_effort), a->duration));
     a->assumptions.push_back(
-        Formatted("The %s hand gripped %zu times with an effort of %g of 10, which you stated.",
+        Formatted("The %s hand exerts itself %zu times (once for each grip, or for each lift and "
+                  "lowering during it) with an effort of %g of 10, which you stated.",
                   HandName(hand), exertions, *work.grip_effort));
   }
 }

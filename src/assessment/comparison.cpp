@@ -33,6 +33,12 @@ Difference DifferenceOf(const QuantityResult& a, const QuantityResult& b) {
   return result;
 }
 
+// Returns words about the damage that is beyond the range of its tool, or "".
+std::string RangeOf(const DamageResult& a, const DamageResult& b) {
+  return (a.outside() ? "; this" + RangeWords(a) : "") +
+         (b.outside() ? "; other" + RangeWords(b) : "");
+}
+
 }  // namespace
 
 Comparison Compare(const Assessment& a, const Assessment& b) {
@@ -79,7 +85,7 @@ std::string ComparisonText(const Comparison& comparison) {
       if (a.tool == b.tool && a.part == b.part)
         AppendLine(&text, "%-52s %8.3g %8.3g%s",
                    (a.tool + ", " + a.part + ", reference day per run [%]").c_str(),
-                   100 * a.day_share, 100 * b.day_share, RangeWords(a.outside() ? a : b).c_str());
+                   100 * a.day_share, 100 * b.day_share, RangeOf(a, b).c_str());
   text +=
       "The values are 95th percentiles over time (5th percentile for balance). The column \"Better "
       "for\" contains the share of 64 possible postures and bodies for which this recording has "

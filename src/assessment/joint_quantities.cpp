@@ -136,11 +136,10 @@ std::vector<std::vector<std::string>> JointTable(const Assessment& a) {
 }
 
 std::string JointTableWords() {
-  return "Torques: magnitudes that are exceeded for 5 % of the time. Share of people, and "
-         "stiffness: "
-         "values that are larger for 95 % of the time. In parentheses: 90 % intervals over 64 "
-         "possible postures and bodies. The strengths are quoted from memory, and are means of "
-         "people of the operator's sex.";
+  return "Torques: magnitudes that are exceeded for 5 % of the time. Share of people and "
+         "stiffness: values that are exceeded for 95 % of the time. In parentheses: 90 % intervals "
+         "over 64 possible postures and bodies. The strengths are means of people of the "
+         "operator's sex, and are recalled, not verified.";
 }
 
 }  // namespace predictor::assessment

@@ -245,6 +245,22 @@ Json PersonSchema() {
       "the person");
 }
 
+Json JobSchema() {
+  Json job = schema::Object(
+      {{"origin", schema::Value("string", "always standard")},
+       {"lifts", schema::Value("integer", "number of lifts with two hands")},
+       {"duration_min", schema::Value("number", "simulated time in which they occur [min]")},
+       {"adapted_composite_lifting_index",
+        schema::ValueOrNull("number",
+                            "NIOSH's index with the weights that the hands carry; "
+                            "null: outside the equation's range")},
+       {"unassisted_composite_lifting_index",
+        schema::ValueOrNull("number", "the same with the weights of the objects")}},
+      "the lifts of the run as one job; null: fewer than two");
+  job["type"] = {"object", "null"};
+  return job;
+}
+
 Json ListSchema(const char* meaning, const Json& example) {
   Json properties = Json::object();
   for (const auto& [key, value] : example.items())
@@ -301,8 +317,7 @@ std::string AssessmentSchema() {
        {"worksheets", schema::Object(worksheets, "scores of observational worksheets")},
        {"limits", ListSchema("limits of the files that were given", ToJson(LimitResult{}))},
        {"lifts", ListSchema("lifts and lowerings of the run", ToJson(Lift{}))},
-       {"lifting_job",
-        schema::ValueOrNull("object", "several lifts as one job: composite lifting indices")},
+       {"lifting_job", JobSchema()},
        {"damage", ListSchema("cumulative damage", ToJson(DamageResult{}))},
        {"fatigue", ListSchema("fatigue of joints", ToJson(FatigueResult{}))},
        {"safety", SafetySchema()},

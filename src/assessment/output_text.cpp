@@ -75,10 +75,13 @@ void AppendSentences(const char* title, const std::vector<T>& list, std::string*
 // Returns a sentence that begins with a space, or "" if the moment of the lift is not known.
 std::string DamageWords(const Lift& lift) {
   if (!lift.moment) return "";
-  return Formatted(
-      " This movement uses %.3g %% of a reference day (LiFFT, largest moment %.0f N·m%s).",
-      100 * *lift.day_share, *lift.moment,
-      lift.outside_lifft() ? ", beyond the range of the method, which is 100 N·m" : "");
+  const std::string beyond = lift.outside_lifft()
+                                 ? Formatted(", beyond the range of the method, which is %.0f N·m",
+                                             ergonomics::kLargestLiftMoment)
+                                 : "";
+  return Formatted(" This %s uses %.3g %% of a reference day (LiFFT, largest moment %.0f N·m%s).",
+                   lift.lowered ? "lowering" : "lift", 100 * *lift.day_share, *lift.moment,
+                   beyond.c_str());
 }
 
 std::string Index(double index) {

@@ -384,7 +384,7 @@ class Composer {
       AddStatic("table", environment.table->top, environment.table->size, kTableColor);
     }
     // A fixture that appears in an event is omitted. It is absent at first, and the participant may
-    // see the scene.
+    // see the scene. A keep-out volume is not a body.
     for (std::size_t i = 0; i < environment.fixtures.size(); ++i)
       if (EventsOfFixture(scenario_, i) == 0 && !environment.fixtures[i].keep_out)
         AddFixture(kFixturePrefix + std::to_string(i), environment.fixtures[i]);

@@ -62,4 +62,20 @@ void RequireShapesOfCobotTouches(const Scenario& scenario, bool cobot, bool obje
     refuse("is given", scenario.cobot.model, "this key.");
 }
 
+void RequirePairsOfCobotTouches(const Scenario& scenario, bool cobot, bool object) {
+  const auto require = [&](bool can_touch, const char* word, const char* reason) {
+    if (!scenario.cobot.Touches(word) || can_touch) return;
+    throw InputError::At("cobot.touches",
+                         std::string("cobot.touches contains ") + word +
+                             ", but the only links of " +
+                             ResolveModelPath(scenario.cobot.model, scenario.folder()).string() +
+                             " with <collision> " + reason +
+                             ", so nothing would collide. Add <collision> to other links, or "
+                             "remove " +
+                             word + " from this list.");
+  };
+  require(object, "object", "belong to the hand that holds the object");
+  require(cobot, "cobot", "are neighbours");
+}
+
 }  // namespace predictor

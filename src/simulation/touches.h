@@ -18,4 +18,8 @@ void RequireShapes(const Scenario& scenario, Toucher toucher, std::size_t shapes
 // `object` state whether the cobot and the carried object have some.
 void RequireShapesOfCobotTouches(const Scenario& scenario, bool cobot, bool object);
 
+// Throws InputError if a word of cobot.touches has no effect. `cobot` and `object` state whether
+// some link can touch another link and the carried object.
+void RequirePairsOfCobotTouches(const Scenario& scenario, bool cobot, bool object);
+
 }  // namespace predictor

@@ -64,11 +64,11 @@ class World {
 
   // Returns a linear model about the present posture at rest. The model includes the controller,
   // joint friction and contacts. The model excludes the coupling, the hands, Coulomb friction, the
-  // movable objects and the contacts of cobot.touches. At the start, neither a movable object nor
-  // such a contact touches the object or the cobot. Therefore
-  // the motion of the movable objects neither affects the handles nor follows from a force on the
-  // handles. The state x contains the tangent-space change of the coordinates (nv) and then their
-  // rates (nv). Allocates memory.
+  // movable objects and the contacts of cobot.touches. At the start, no movable object touches the
+  // object or the cobot, and none of these contacts is closed. Therefore the motion of the movable
+  // objects neither affects the handles nor follows from a force on the handles. The state x
+  // contains the tangent-space change of the coordinates (nv) and then their rates (nv). Allocates
+  // memory.
   LinearModel Linearise() const;
 
   // Judges the stability of the loop that the sampled controller and this scene form. Allocates

@@ -41,7 +41,7 @@ TEST(HullWarnings, NameTheMeshesThatCollideAndTheirExcess) {
   s.file = folder / "test.yaml";
   s.object.primitive.reset();
   s.object.model = "part.urdf";
-  const std::vector<std::string> warnings = HullWarnings(s);
+  const std::vector<std::string> warnings = HullWarnings(s, {});
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_TRUE(Contains(warnings[0], "object.model: ")) << warnings[0];
   EXPECT_TRUE(Contains(
@@ -49,15 +49,35 @@ TEST(HullWarnings, NameTheMeshesThatCollideAndTheirExcess) {
                        " collides instead of the mesh, and is 2.0 times as large."))
       << warnings[0];
   s.environment.fixtures.clear();
-  EXPECT_TRUE(HullWarnings(s).empty());
+  EXPECT_TRUE(HullWarnings(s, {}).empty());
   s.cobot.touches = {"object"};
-  EXPECT_EQ(HullWarnings(s).size(), 1u);
+  EXPECT_EQ(HullWarnings(s, {}).size(), 1u);
+}
+
+// A link of the cobot is judged only if it can touch something.
+TEST(HullWarnings, ConcernLinksThatCanTouch) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "deep.obj") << VShape(0.5);
+  std::ofstream(folder / "arm.urdf")
+      << "<robot name=\"arm\"><link name=\"base\"><collision><geometry><mesh "
+         "filename=\"deep.obj\"/>"
+         "</geometry></collision></link></robot>\n";
+  Scenario s = LoadScenario(std::filesystem::path(PREDICTOR_SOURCE_DIR) / "scenarios/box_9kg.yaml");
+  s.file = folder / "test.yaml";
+  s.cobot.model = "arm.urdf";
+  s.cobot.remove_links.clear();
+  s.cobot.touches = {"cobot"};
+  const std::vector<std::string> warnings = HullWarnings(s, {{"base", "hand"}});
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_TRUE(Contains(warnings[0], "cobot.model: ")) << warnings[0];
+  EXPECT_TRUE(HullWarnings(s, {{"base", "hand", PairState::kOverlaps}}).empty());
 }
 
 TEST(HullWarnings, AreAbsentForPrimitivesAndForAPanda) {
   for (const char* name : {"peg_in_hole", "doorway", "push_boxes"})
     EXPECT_TRUE(HullWarnings(LoadScenario(std::filesystem::path(PREDICTOR_SOURCE_DIR) /
-                                          "scenarios" / (std::string(name) + ".yaml")))
+                                          "scenarios" / (std::string(name) + ".yaml")),
+                             {})
                     .empty())
         << name;
 }

@@ -192,7 +192,7 @@ TEST(Lifts, CauseTheDamageOfTheirLargestMoment) {
   EXPECT_LT(*a.lifts[0].moment, 2 * 60 * 0.5);  // the hands are at most 0.5 m from the disc
   ASSERT_EQ(a.damage[0].tool, "LiFFT");
   EXPECT_NEAR(*a.lifts[0].day_share / a.damage[0].day_share, 1, 0.01);
-  EXPECT_NE(AssessmentText(a).find("This movement uses"), std::string::npos);
+  EXPECT_NE(AssessmentText(a).find("This lift uses"), std::string::npos);
   EXPECT_EQ(AssessmentText(a).find("beyond the range"), std::string::npos);
 }
 

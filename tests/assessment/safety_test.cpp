@@ -311,7 +311,8 @@ TEST(LettingGo, ClampingNamesTheFixtures) {
   FixtureSpec wall{.touches = {"object"}, .name = "wall"};
   FixtureSpec unnamed{.shape = FixtureShape::kSphere, .touches = {"cobot"}};
   FixtureSpec drawn{.touches = {}, .name = "drawn"};
-  scenario.environment.fixtures = {wall, unnamed, drawn};
+  FixtureSpec volume{.name = "volume", .keep_out = true};
+  scenario.environment.fixtures = {wall, unnamed, drawn, volume};
   EXPECT_EQ(ClampingFixtures(scenario),
             (std::vector<std::string>{"the table", "wall", "a sphere"}));
 }

@@ -275,5 +275,30 @@ TEST_F(SlidingLinks, ThatHaveNoShapesAreRefused) {
                 "this file, or remove this key.");
 }
 
+// Without the shapes of the base, the sledge and the slider remain, which a joint connects. Without
+// those of the sledge, only the slider remains, which holds the object.
+TEST_F(SlidingLinks, OfWhichNoneCanTouchAreRefused) {
+  With({});
+  std::string text = ReadWholeFile(folder_.path() / "slider.urdf");
+  const auto expect_refusal = [&](const std::string& word, const std::string& reason) {
+    std::ofstream(folder_.path() / "slider.urdf") << text;
+    EXPECT_EQ(
+        RefusalOf(LoadScenario(folder_.path() / "slider.yaml", {"cobot.touches=[" + word + "]"})),
+        "cobot.touches | cobot.touches contains " + word + ", but the only links of " +
+            (folder_ / "slider.urdf").string() + " with <collision> " + reason +
+            ", so nothing would collide. Add <collision> to other links, or remove " + word +
+            " from this list.");
+  };
+  const auto erase_first_shape = [&] {
+    const std::size_t at = text.find("<collision>");
+    text.erase(at, text.find("</collision>", at) + 12 - at);
+  };
+  erase_first_shape();
+  erase_first_shape();
+  expect_refusal("cobot", "are neighbours");
+  erase_first_shape();
+  expect_refusal("object", "belong to the hand that holds the object");
+}
+
 }  // namespace
 }  // namespace predictor

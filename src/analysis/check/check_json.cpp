@@ -183,11 +183,13 @@ const schema::Words kWords = {
      {"nearest_link_of_hand", "the link of the cobot's hand that is nearest to the object"},
      {"link", "name of the link; empty: none is within 2 m"},
      {"clearance_m", "distance, at most 2 m; negative: depth of the overlap [m]"},
-     {"contact_pairs", "the bodies that cobot.touches concerns; empty: it is empty"},
+     {"contact_pairs",
+      "the pairs of bodies that cobot.touches concerns; empty if cobot.touches is empty"},
      {"keep_out", "numbers of the fixtures that are keep-out volumes; empty: none"},
      {"other", "name of another link; empty: the carried object"},
      {"state",
-      "can_touch, or why no contact acts: overlap (at cobot.posture), joint (a joint connects "
+      "can_touch, or why no contact acts: overlap (they overlap, or are less than 1 mm apart, at "
+      "cobot.posture), joint (a joint connects "
       "them), one_body (rigidly connected) or holds (the link belongs to the hand that holds the "
       "object)"},
      {"gap_m",

@@ -16,6 +16,6 @@ namespace predictor {
 // of the bodies that can touch because of cobot.touches, which `pairs` contains. Throws InputError
 // if a model cannot be read.
 std::vector<std::string> HullWarnings(const Scenario& scenario,
-                                      const std::vector<ContactPair>& pairs = {});
+                                      const std::vector<ContactPair>& pairs);
 
 }  // namespace predictor

@@ -43,8 +43,9 @@ void AddPossibleContacts(const std::vector<ContactPair>& pairs, std::string* tex
   for (const auto& [body, partners] : lines)
     AppendLine(text, "  cobot.touches    %s can touch %s", body.c_str(), partners.c_str());
   if (nearest)
-    AppendLine(text, "  nearest pair     %s and %s, %s apart", nearest->link.c_str(),
-               NameOfOther(*nearest).c_str(), Millimetres(nearest->distance).c_str());
+    AppendLine(text, "  nearest pair     %s and %s, %s%s apart", nearest->link.c_str(),
+               NameOfOther(*nearest).c_str(), nearest->distance < kFarthestPair ? "" : "at least ",
+               Millimetres(nearest->distance).c_str());
 }
 
 // Appends the pairs that cannot touch for one reason.
@@ -55,14 +56,15 @@ void AddExcludedPairs(const std::vector<ContactPair>& pairs, PairState state, co
     if (pair.state != state) continue;
     names += (names.empty() ? "" : ", ") + pair.link + " and " + NameOfOther(pair);
     if (state == PairState::kOverlaps && pair.distance < 0)
-      names += " (by " + Millimetres(-pair.distance) + ")";
+      names += " (by " + Millimetres(-pair.distance) + " at the start)";
   }
   if (!names.empty()) AppendLine(text, "  no contact       %s: %s", reason, names.c_str());
 }
 
 void AddPairs(const std::vector<ContactPair>& pairs, std::string* text) {
   AddPossibleContacts(pairs, text);
-  AddExcludedPairs(pairs, PairState::kOverlaps, "overlap at cobot.posture", text);
+  AddExcludedPairs(pairs, PairState::kOverlaps,
+                   "overlap, or less than 1 mm apart, at cobot.posture", text);
   AddExcludedPairs(pairs, PairState::kJoint, "connected by a joint", text);
   AddExcludedPairs(pairs, PairState::kOneBody, "rigidly connected", text);
   AddExcludedPairs(pairs, PairState::kHolds, "hand and what it holds", text);

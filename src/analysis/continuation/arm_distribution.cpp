@@ -46,11 +46,11 @@ nlohmann::json ParseArm(const std::string& file) {
   if (text.size() > kMaxFile) throw InputError(file, "The file is larger than 1 MiB.");
   try {
     return nlohmann::json::parse(text);
-  } catch (const nlohmann::json::exception&) {
-    throw InputError(
-        file,
-        "This is not JSON. Give a file that `predictor identify-arm` wrote with --left "
-        "or --right.");
+  } catch (const nlohmann::json::parse_error& error) {
+    throw InputError(file, "This is not JSON: there is an error at byte " +
+                               std::to_string(error.byte) +
+                               ". Give a file that `predictor identify-arm` wrote with --left or "
+                               "--right.");
   }
 }
 

@@ -58,7 +58,8 @@ void FixHandles(Scenario* s) {
 void ReplaceObject(Scenario* s, double mass) {
   const World before(*s);
   s->object.primitive = ScaledObject(*s, mass);
-  FixHandles(s);  // the primitive has no links
+  FixHandles(s);             // the primitive has no links
+  s->cobot.touches.clear();  // not in the linear model, and the box is not the object's shape
   s->object.model.clear();
   const World after(*s);
   const Quaternion R_RW = s->environment.shift.value_or(PoseSpec()).ToPose().q;

@@ -99,11 +99,8 @@ Json ToJson(const UnintendedContact& contact) {
 }
 
 Json ToJson(const RigLimit& limit) {
-  return {{"what", limit.what},
-          {"unit", limit.unit.si},
-          {"limit", limit.limit},
-          {"reached", limit.reached},
-          {"censored", limit.censored()}};
+  return {{"what", limit.what},       {"unit", limit.unit.si}, {"limit", limit.limit},
+          {"reached", limit.reached}, {"event", limit.event},  {"censored", limit.censored()}};
 }
 
 // Returns the meaning of a key. A key has the same meaning at every place where it occurs.
@@ -147,6 +144,7 @@ std::string MeaningOf(const std::string& key) {
       {"why", "why it could not be judged"},
       {"limit", "limit of what the rig renders, SI"},
       {"reached", "largest value in the run, SI"},
+      {"event", "hazard that had begun last when the value was largest; empty: none"},
       {"censored", "whether the true value may have been larger"},
   };
   return kMeanings.at(key);

@@ -62,7 +62,7 @@ class AdmittanceLaw : public Controller {
   // at the start.
   AdmittanceLaw(const ControllerContext& context, const AdmittanceParameters& parameters, int own);
 
-  // Returns F + F_a − D_d V, the wrench that accelerates M_d.
+  // Returns the wrench that accelerates M_d.
   virtual Wrench Accelerating(const ControllerInput& input, const Wrench& F) noexcept = 0;
   // Returns the displacement x_d of the set-point since the start [m], [rad].
   virtual Vector6 PathAt(double) const noexcept { return Vector6::Zero(); }

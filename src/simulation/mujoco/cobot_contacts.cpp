@@ -91,7 +91,10 @@ void CobotShapes::FindHand(const UrdfModel& urdf, const std::string& end_effecto
   for (const UrdfJoint& joint : urdf.joints)
     if (in_hand_[links_[static_cast<std::size_t>(joint.parent)].body])
       in_hand_[links_[static_cast<std::size_t>(joint.child)].body] = true;
-  if (!has_shapes_[hand]) in_hand_[carrier_[hand]] = true;
+  const auto is_shape_of_hand = [this](const Link& link) {
+    return link.has_shapes && in_hand_[link.body];
+  };
+  if (std::ranges::none_of(links_, is_shape_of_hand)) in_hand_[carrier_[hand]] = true;
 }
 
 std::vector<std::string> CobotShapes::Moving() const {
@@ -118,12 +121,12 @@ std::vector<ContactPair> CobotShapes::AddContacts(mjSpec* spec, const Scenario& 
   RequireShapesOfCobotTouches(scenario, std::ranges::find(has_shapes_, true) != has_shapes_.end(),
                               !object.empty());
   std::vector<ContactPair> excluded;
+  bool with_object = false, with_link = false;  // whether some link can touch them
   const auto add = [&](const Link& link, const std::string& other, PairState state,
                        const std::vector<std::string>& shapes) {
-    if (state == PairState::kCanTouch)
-      AddPairs(spec, link.shapes, shapes, scenario.environment.friction);
-    else
-      excluded.push_back({link.name, other, state});
+    if (state != PairState::kCanTouch) return excluded.push_back({link.name, other, state});
+    AddPairs(spec, link.shapes, shapes, scenario.environment.friction);
+    (other.empty() ? with_object : with_link) = true;
   };
   for (std::size_t i = 0; i < links_.size(); ++i) {
     const Link& link = links_[i];
@@ -135,6 +138,7 @@ std::vector<ContactPair> CobotShapes::AddContacts(mjSpec* spec, const Scenario& 
       if (links_[j].has_shapes)
         add(links_[j], link.name, StateOf(links_[j].body, link.body), link.shapes);
   }
+  RequirePairsOfCobotTouches(scenario, with_link, with_object);
   return excluded;
 }
 
