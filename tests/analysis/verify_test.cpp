@@ -135,13 +135,13 @@ TEST_F(VerifyTest, ARunInWhichTheObjectTouchesTheCobotIsTheSameAgain) {
   std::ofstream(folder_ / "deck.urdf") << urdf;
   std::ofstream(folder_ / "deck.yaml")
       << ReadWholeFile(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml");
-  scenario_ = LoadScenario(
-      folder_ / "deck.yaml",
-      {"duration=2", "cobot.model=deck.urdf", "cobot.remove_links=[]", "cobot.end_effector=hand",
-       "cobot.posture=[0 m]", "cobot.touches=[object, cobot]",
-       "cobot.controller={type: joint_impedance, joint_stiffness: 5000}",
-       "object.attachment={joint: fixed, on_end_effector: {xyz: [0, 0, -0.1]}}",
-       "operator.script=[]"});
+  scenario_ =
+      LoadScenario(folder_ / "deck.yaml",
+                   {"duration=2", "cobot.model=deck.urdf", "cobot.remove_links=[]",
+                    "cobot.end_effector=hand", "cobot.posture=[0 m]", "cobot.touches=[object]",
+                    "cobot.controller={type: joint_impedance, joint_stiffness: 5000}",
+                    "object.attachment={joint: fixed, on_end_effector: {xyz: [0, 0, -0.1]}}",
+                    "operator.script=[]"});
   scenario_.object.model.clear();
   scenario_.object.primitive = PrimitiveSpec{.size = {0.26, 0.38, 0.2}, .mass = 9};
   scenario_.events.emplace_back();

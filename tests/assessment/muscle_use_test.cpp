@@ -93,7 +93,7 @@ TEST(MuscleUse, RaisedArmsHaveNoConclusionsAboutTheShoulder) {
   for (const char* gap :
        {"damage of the left shoulder (Shoulder Tool)", "fatigue of the right shoulder"})
     EXPECT_TRUE(HasGap(a, gap)) << gap;
-  EXPECT_TRUE(HasGap(a, "muscles of the left shoulder for 100.0 % of the time"));
+  EXPECT_TRUE(HasGap(a, "muscles and stiffness of this arm, for 100.0 % of the time"));
   const auto json = nlohmann::json::parse(AssessmentJson(a));
   EXPECT_TRUE(json.at("quantities").at("muscles.left.largest").at("mean").is_null());
   EXPECT_NE(AssessmentText(a).find("–"), std::string::npos);
