@@ -115,7 +115,7 @@ void ArmFollower::JudgeSpeed(const JointVector& from, const JointVector& to, dou
   }
 }
 
-DeviceReach::DeviceReach(const Scenario& s) : scenario_(s) {
+DeviceReach::DeviceReach(const Scenario& s) {
   std::array<std::shared_ptr<const RobotModel>, kHands> models;
   for (const int i : s.hands()) {
     const auto h = static_cast<std::size_t>(i);
@@ -169,7 +169,7 @@ Reach DeviceReach::Over(const std::vector<std::vector<IntendedSample>>& paths,
         Merge(track[h].reach, &*reach.arms[h]);
       else
         reach.arms[h] = track[h].reach;
-      const Vector3& p_OD = arms_[h]->X_OD().p;
+      const Vector3& p_OD = arms_[h]->handle_pose().p;
       for (const IntendedSample& sample : path) {
         if (!sample.held) continue;
         const Twist V = ShiftTwist(sample.V_WO, sample.X_WO.q * p_OD);

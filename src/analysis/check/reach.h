@@ -72,7 +72,7 @@ class ArmFollower {
   ArmFollower(const Scenario& scenario, int hand);
 
   const std::shared_ptr<const RobotModel>& model() const { return model_; }
-  const Pose& X_OD() const { return X_OD_; }  // of the handle
+  const Pose& handle_pose() const { return X_OD_; }
   // Sets the links whose positions Follow stores.
   void Watch(const std::vector<FrameId>& links) { links_ = links; }
 
@@ -126,7 +126,6 @@ class DeviceReach {
     std::string name;
     std::vector<Link> links;  // two links
   };
-  const Scenario& scenario_;
   std::array<std::optional<ArmFollower>, kHands> arms_;
   std::vector<WatchedPair> pairs_;
 };
