@@ -5,6 +5,7 @@
 #include <atomic>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -12,6 +13,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/format.h"
+#include "core/text.h"
 #include "evaluation/questionnaire_files.h"
 #include "evaluation/questionnaire_report.h"
 #include "evaluation/questionnaire_table.h"
@@ -104,12 +106,11 @@ void StopAtSignal(viewer::Server* server) {
 }
 
 // After this call, the process parses the browsers' input with restricted rights and may only write
-// into the folder of the answers and into that of the file `json`.
-void GiveUpRights(const fs::path& folder, const std::string& json) {
+// into the folder of the answers and into files that are open already.
+void GiveUpRights(const fs::path& folder) {
   if (kSanitized) return;
   Preparation may;
   may.write = {folder};
-  if (!json.empty() && json != "-") may.write.push_back(fs::absolute(json).parent_path());
   if (const std::string missing = EnterPreparation(may); !missing.empty())
     TheScreen().Print("Warning: the server is not fully sandboxed, because this system lacks " +
                       missing + ".");
@@ -173,7 +174,9 @@ int SurveyAskCommand(const SurveyOptions& options) {
   serving.port = options.port;
   viewer::Server server(serving, &app);
   StopAtSignal(&server);
-  GiveUpRights(to.folder, options.json);
+  std::ofstream json;
+  if (!options.json.empty() && options.json != "-") json.open(options.json);
+  GiveUpRights(to.folder);
   bool running = true;  // the end of the server also ends connections
   app.OnOver([&] {
     if (running) server.Stop();
@@ -191,7 +194,12 @@ int SurveyAskCommand(const SurveyOptions& options) {
   else
     TheScreen().Print("No answer was given.");
   const Json result = {{"stored", stored}, {"folder", to.folder.string()}};
-  options.WriteJson(result.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  const std::string text = result.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  if (!json.is_open())
+    options.WriteJson(text);
+  else if (!(json << text).flush())
+    throw InputError("--json: " + Quote(options.json) +
+                     " could not be written. Give a path on a disk with free space.");
   return kFinished;
 }
 

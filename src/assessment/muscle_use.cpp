@@ -111,7 +111,7 @@ constexpr Row kRows[kMuscleValues] = {
     {{"muscles.left.elbow_flexors", "muscles.right.elbow_flexors"}, "elbow flexors", kShare},
     {{"muscles.left.elbow_extensors", "muscles.right.elbow_extensors"}, "elbow extensors", kShare},
     {{"muscles.left.forearm", "muscles.right.forearm"}, "forearm and wrist", kShare},
-    {{"muscles.left.reserve_nm", "muscles.right.reserve_nm"}, "torque that is missing", kTorque},
+    {{"muscles.left.reserve_nm", "muscles.right.reserve_nm"}, "torque the muscles lack", kTorque},
     {{"muscles.left.too_weak", "muscles.right.too_weak"}, "share of time too weak", kShare},
     {{"muscles.left.softest_n_per_m", "muscles.right.softest_n_per_m"},
      "hand's smallest stiffness",

@@ -118,11 +118,11 @@ std::string OperatorSentence(const Assessment& a) {
 std::string ReachSentence(const Assessment& a) {
   std::string text = Formatted(
       "A hand held a handle for %.1f of %.1f s. Only this time is judged. The body reaches the "
-      "handles for %.0f %% of it",
+      "handles for %.0f %% of this time",
       a.held, a.duration, 100 * a.reached);
   if (a.worst_miss > 5e-4) Append(&text, " and misses them by up to %.0f mm", 1e3 * a.worst_miss);
   if (!a.sampled_times.empty())
-    Append(&text, ", for %.0f %% of the possible postures", 100 * a.sampled_reached);
+    Append(&text, "; over all possible postures, for %.0f %%", 100 * a.sampled_reached);
   return text + ".";
 }
 
