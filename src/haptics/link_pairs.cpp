@@ -22,6 +22,10 @@ NamedLink ParseLink(const std::string& name, int side) {
   return {side, name};
 }
 
+std::string DisplayName(const NamedLink& link) {
+  return std::string(kHandNames[static_cast<std::size_t>(link.arm)]) + " " + link.link;
+}
+
 // `key` is the key of the pair.
 FrameId FrameOf(const NamedLink& link,
                 const std::array<std::shared_ptr<const RobotModel>, kHands>& models,
@@ -65,7 +69,7 @@ std::vector<LinkPair> LinkPairs(
       throw InputError::At(
           key, key + " keeps " + Quote(a.link) + " apart from itself. Give two different links.");
     pairs.push_back({a.arm, b.arm, FrameOf(a, models, key), FrameOf(b, models, key),
-                     names[i][0] + " and " + names[i][1]});
+                     DisplayName(a) + " and " + DisplayName(b)});
   }
   return pairs;
 }

@@ -17,7 +17,7 @@ inline constexpr int kMaxLinkPairs = 8;
 struct LinkPair {
   int arm_a, arm_b;
   FrameId a, b;
-  std::string name;  // as written in the scenario: "LINK and LINK"
+  std::string name;  // "left LINK and right LINK"
 };
 
 // Returns the vector from the origin of b to the origin of a, in W [m].

@@ -152,6 +152,9 @@ void Checker::Fixture(std::size_t i) const {
   Unless(fixture.size.head(used).minCoeff() > 0, path + ".size",
          "has a zero among the first " + std::to_string(used) + " entries, the dimensions of a " +
              NameOf(fixture.shape) + ". The dimensions must be greater than 0.");
+  Unless(!fixture.keep_out || fixture.touches == FixtureSpec().touches, path + ".touches",
+         "has no effect on a keep-out volume, with which only the cobot collides. Remove touches, "
+         "or keep_out.");
   Unless(fixture.stiffness || fixture.damping == 0, path + ".damping",
          "is given without a stiffness. Give " + path +
              ".stiffness in N/m too, or damping_ratio instead of damping.");

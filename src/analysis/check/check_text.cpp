@@ -171,23 +171,25 @@ void AddContact(const ContactReport& r, std::string* text) {
              r.fixtures.size() == 1 ? "fixture" : "fixtures", Numbers(r.fixtures).c_str(), n.x(),
              n.y(), n.z(), r.stable ? "stable" : "UNSTABLE");
   if (r.yields)
-    AppendLine(text, "    stiffness        %.3g N/m at each point", r.wall.stiffness);
+    AppendLine(text, "    stiffness        %.3g kN/m at each point", 1e-3 * r.wall.stiffness);
   else
-    AppendLine(text, "    stiffness        rigid (in the simulation, %.3g N/m at each point)",
-               r.wall.stiffness);
+    AppendLine(text, "    stiffness        rigid (in the simulation, %.3g kN/m at each point)",
+               1e-3 * r.wall.stiffness);
   const char* instead = r.yields ? "" : ", as a spring without damping";
   if (!r.limit.reached)
-    AppendLine(text, "    stable up to     more than %.3g N/m%s", kStiffestWall, instead);
+    AppendLine(text, "    stable up to     more than %.3g kN/m%s", 1e-3 * kStiffestWall, instead);
   else if (r.limit.stiffness > 0)
-    AppendLine(text, "    stable up to     %.3g N/m in all%s; oscillates at %.1f Hz above",
-               r.limit.stiffness, instead, r.limit.frequency);
+    AppendLine(text, "    stable up to     %.3g kN/m in all%s; oscillates at %.1f Hz above",
+               1e-3 * r.limit.stiffness, instead, r.limit.frequency);
   else
-    AppendLine(text, "    stable up to     0 N/m: oscillates at %.1f Hz even without a fixture",
+    AppendLine(text, "    stable up to     0 kN/m: oscillates at %.1f Hz even without a fixture",
                r.limit.frequency);
-  AppendLine(text, "    felt at rest     %.3g N/m of %.3g", r.at_rest.rendered.real(),
-             r.at_rest.requested.real());
-  AppendLine(text, "    felt at %.0f Hz     %.3g N/m of %.3g, %.3g N·s/m of %.3g%s", kFeltFrequency,
-             r.moving.rendered.real(), r.moving.requested.real(),
+  AppendLine(text, "    felt at rest     stiffness %.3g kN/m (requested %.3g)",
+             1e-3 * r.at_rest.rendered.real(), 1e-3 * r.at_rest.requested.real());
+  AppendLine(text,
+             "    felt at %.0f Hz     stiffness %.3g kN/m (requested %.3g), damping %.3g N·s/m "
+             "(requested %.3g)%s",
+             kFeltFrequency, 1e-3 * r.moving.rendered.real(), 1e-3 * r.moving.requested.real(),
              DampingOf(r.moving.rendered, kFeltFrequency),
              DampingOf(r.moving.requested, kFeltFrequency),
              r.moving.rendered.imag() < 0 ? " (the arms' lag feeds energy in)" : "");
