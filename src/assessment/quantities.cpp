@@ -105,9 +105,8 @@ constexpr QuantityKind kQuantities[] = {
      0, "", 0},
     {"arms.right.wrist_flexion_rad", kArms, "right wrist bend", kDegree, Origin::kModelled,
      Wrist<1>, 0, "", 1},
-    {"balance.margin_m", "Balance", "pressure to edge of feet", kCentimetre,
-     Origin::kModelled, [](const Moment& m) { return m.frame.loads.balance.margin; }, 0, "", -1,
-     Bad::kLow},
+    {"balance.margin_m", "Balance", "pressure to edge of feet", kCentimetre, Origin::kModelled,
+     [](const Moment& m) { return m.frame.loads.balance.margin; }, 0, "", -1, Bad::kLow},
 };
 
 constexpr WorksheetKind kWorksheets[] = {
