@@ -8,7 +8,7 @@ work=$(mktemp -d)
 trap 'rm -rf --one-file-system "$work"' EXIT
 system=$work/system
 
-debootstrap --variant=minbase bookworm "$system" http://deb.debian.org/debian >"$work/log" || { tail "$work/log"; exit 1; }
+debootstrap --variant=minbase bookworm "$system" >"$work/log" || { tail "$work/log"; exit 1; }
 cp /etc/resolv.conf "$system/etc/"
 cp "$package" "$system/root/predictor.deb"
 

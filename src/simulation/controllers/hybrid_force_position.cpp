@@ -80,11 +80,11 @@ class HybridForcePosition final : public WrenchControl {
     return motion;
   }
 
-  Wrench Command(const ControllerInput& input, const Pose& X, const Twist&) noexcept override {
+  Wrench Command(const Pose& set_point, const Pose& X, const Twist&) noexcept override {
     const auto integral = Vector3::Map(memory_.data()), error = Vector3::Map(memory_.data() + 3);
     Wrench F = Wrench::Zero();
     F.head<3>() = selected_.cwiseProduct(p_.force) + integral + p_.gain * error +
-                  free_.cwiseProduct(p_.stiffness).cwiseProduct(SetPoint(input.time).X_W.p - X.p);
+                  free_.cwiseProduct(p_.stiffness).cwiseProduct(set_point.p - X.p);
     return F;
   }
 

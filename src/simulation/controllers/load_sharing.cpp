@@ -59,7 +59,7 @@ class LoadSharing final : public WrenchControl {
     return p_.share * p_.load.mass * gravity() * Vector3::UnitZ();
   }
 
-  Wrench Command(const ControllerInput&, const Pose& X, const Twist& V) noexcept override {
+  Wrench Command(const Pose&, const Pose& X, const Twist& V) noexcept override {
     return p_.load.WrenchOf(Carried() + p_.inertia_share * p_.load.mass * Acceleration(V), X);
   }
 

@@ -80,7 +80,7 @@ class VirtualFixtures final : public WrenchControl {
   }
   Vector3 Weight() const noexcept { return p_.load.mass * gravity() * Vector3::UnitZ(); }
 
-  Wrench Command(const ControllerInput&, const Pose& X, const Twist& V) noexcept override {
+  Wrench Command(const Pose&, const Pose& X, const Twist& V) noexcept override {
     Wrench F = p_.load.WrenchOf(Weight(), X);
     F.head<3>() -= p_.stiffness * Displacement(X) + p_.damping * across_ * V.head<3>();
     F.head<3>() -= InZone(X) * p_.zone_damping * V.head<3>();

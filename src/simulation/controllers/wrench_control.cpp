@@ -6,7 +6,7 @@ void WrenchControl::Compute(const ControllerInput& input, JointVector* torque) n
   const Pose X = input.data->FramePose(*input.model, input.end_effector);
   const Twist V = input.data->FrameTwist(*input.model, input.end_effector);
   const FrameMotion d = SetPoint(input.time);
-  Wrench F = Command(input, X, V);
+  Wrench F = Command(d.X_W, X, V);
   F.head<3>() -= p_.damping_translation * (V - d.V_W).head<3>();
   F.tail<3>() += p_.stiffness_rotation * RotationError(d.X_W.q, X.q);
   F.tail<3>() -= p_.damping_rotation * (V - d.V_W).tail<3>();

@@ -59,9 +59,8 @@ class WrenchControl : public Controller {
   WrenchControl(const ControllerContext& context, const WrenchControlParameters& parameters)
       : p_(parameters), gravity_(context.gravity), X_start_(context.X_WE_start) {}
 
-  // Returns F, about E, in axes of W.
-  virtual Wrench Command(const ControllerInput& input, const Pose& X_WE,
-                         const Twist& V_WE) noexcept = 0;
+  // Returns F, about E, in axes of W. `set_point` is the pose that SetPoint returns.
+  virtual Wrench Command(const Pose& set_point, const Pose& X_WE, const Twist& V_WE) noexcept = 0;
   // Returns the potential energy of F [J] for a pose of the end-effector and a set-point.
   virtual double Potential(const Pose&, const Pose&) const noexcept { return 0; }
   // Returns the set-point at the time [s].
