@@ -20,6 +20,15 @@ SymmetricModes SymmetricModesOf(const Eigen::MatrixXd& K, const Eigen::MatrixXd&
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
+SymmetricModes SymmetricModesOf(const Eigen::MatrixXd& K) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(K);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+Eigen::VectorXd SymmetricEigenvaluesOf(const Eigen::MatrixXd& K) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
 Eigen::MatrixXd Solve(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
   return A.partialPivLu().solve(B);
 }

@@ -23,6 +23,10 @@ struct SymmetricModes {
 };
 SymmetricModes SymmetricModesOf(const Eigen::MatrixXd& K, const Eigen::MatrixXd& M);
 
+// The same with M = 1.
+SymmetricModes SymmetricModesOf(const Eigen::MatrixXd& K);
+Eigen::VectorXd SymmetricEigenvaluesOf(const Eigen::MatrixXd& K);
+
 // Solves A X = B for X. A is square and regular.
 Eigen::MatrixXd Solve(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 

@@ -1,12 +1,12 @@
 #include "simulation/sampled_loop.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <complex>
 #include <limits>
 #include <numbers>
 
+#include "core/linear_algebra.h"
 #include "simulation/linearise.h"
 
 namespace predictor {
@@ -114,20 +114,18 @@ class Periods {
 // growth.
 double FastestGrowth(const Periods& periods, const MatrixXd& matrix, double* frequency = nullptr,
                      VectorXd* velocities = nullptr) {
-  const Eigen::EigenSolver<MatrixXd> solver(matrix, velocities != nullptr);
+  const Modes modes = velocities ? ModesOf(matrix) : Modes{EigenvaluesOf(matrix), {}};
   double growth = -std::numeric_limits<double>::infinity();
   for (Index i = 0; i < matrix.rows(); ++i) {
-    const std::complex<double> z = solver.eigenvalues()[i];
+    const std::complex<double> z = modes.eigenvalues[i];
     const double hertz = std::fabs(std::arg(z)) / (2 * std::numbers::pi * periods.time());
     const double rate = std::log(std::abs(z)) / periods.time();
     if (hertz < SampledLoop::kSlowest || !(rate > growth)) continue;
     growth = rate;
     if (frequency) *frequency = hertz;
     if (velocities)
-      *velocities = solver.eigenvectors()
-                        .col(i)
-                        .segment(periods.velocities(), periods.velocities())
-                        .cwiseAbs();
+      *velocities =
+          modes.eigenvectors.col(i).segment(periods.velocities(), periods.velocities()).cwiseAbs();
   }
   return growth;
 }

@@ -1,9 +1,9 @@
 #include "analysis/check/reach.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.h"
 #include "emulator/placement.h"
 #include "haptics/approach_speed.h"
 #include "haptics/link_pairs.h"
@@ -32,10 +32,7 @@ void Merge(const ArmReach& other, ArmReach* reach) {
 
 double SmallestSingularValue(Jacobian J, double characteristic_length) {
   J.bottomRows<3>() *= characteristic_length;
-  Matrix6 A;
-  A.noalias() = J * J.transpose();
-  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(A, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, solver.eigenvalues()[0]));
+  return std::sqrt(std::max(0.0, SymmetricEigenvaluesOf(J * J.transpose())[0]));
 }
 
 bool SamePose(const Pose& a, const Pose& b) { return a.p == b.p && a.q.coeffs() == b.q.coeffs(); }

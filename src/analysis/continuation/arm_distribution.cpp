@@ -1,12 +1,12 @@
 #include "analysis/continuation/arm_distribution.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/linear_algebra.h"
 #include "core/text.h"
 
 namespace predictor {
@@ -32,13 +32,12 @@ ArmDistribution::Vector MomentsOf(const HandSpec& hand) {
 // Returns a square root of a covariance, which may be singular. Throws InputError if the matrix is
 // not a covariance.
 ArmDistribution::Matrix RootOf(const ArmDistribution::Matrix& covariance) {
-  using Matrix = ArmDistribution::Matrix;
-  const Eigen::SelfAdjointEigenSolver<Matrix> solver(covariance);
-  const double largest = solver.eigenvalues().cwiseAbs().maxCoeff();
+  const auto [values, vectors] = SymmetricModesOf(covariance);
+  const double largest = values.cwiseAbs().maxCoeff();
   if (!covariance.allFinite() || !covariance.isApprox(covariance.transpose(), 1e-9) ||
-      solver.eigenvalues().minCoeff() < -1e-9 * std::max(largest, 1e-12))
+      values.minCoeff() < -1e-9 * std::max(largest, 1e-12))
     throw InputError("The covariance of the arm is not symmetric and positive semidefinite.");
-  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+  return vectors * values.cwiseMax(0).cwiseSqrt().asDiagonal();
 }
 
 nlohmann::json ParseArm(const std::string& file) {
