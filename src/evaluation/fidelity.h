@@ -96,9 +96,10 @@ struct PerceivedQuantity {
   double difference = 0;            // (b − a) / |a|
   double error = 0;                 // standard error of the difference
   NoticeableDifference jnd;
-  // The verdict is kUndecided if either the standard error of the quantity in run a or the standard
-  // error of the difference reaches the JND. If the standard errors are unknown, the verdict is
-  // based only on the values, and the report contains a warning.
+  // Based on the 90 % interval of the difference's size, ± 1.645 standard errors: kNo if the whole
+  // interval is below the JND, kYes if it is above the JND, kUndecided if it begins below the JND
+  // and ends above it, otherwise kPerhaps. If the standard errors are unknown, the verdict is based
+  // only on the values, and the report contains a warning.
   Noticed noticed = Noticed::kUndecided;
 };
 

@@ -20,6 +20,19 @@ constexpr NoticeableDifference kForce = {0.07, 0.10};
 constexpr NoticeableDifference kMass = {0.20, 0.20};
 constexpr NoticeableDifference kStiffness = {0.22, 0.23};
 constexpr NoticeableDifference kViscosity = {0.34, 0.34};
+constexpr double kIntervalHalf = 1.645;  // half of a 90 % interval [standard errors]
+
+// The verdict about a difference [share of a] with a standard error. A verdict other than
+// kUndecided needs evidence: the whole 90 % interval must support it.
+Noticed VerdictOn(double difference, double error, const NoticeableDifference& jnd) {
+  // Without repeats, the standard errors are unknown, so the verdict is based only on the values.
+  const double half = error == error ? kIntervalHalf * error : 0;
+  const double low = difference - half, high = difference + half;
+  if (high < jnd.low) return Noticed::kNo;
+  if (low > jnd.high) return Noticed::kYes;
+  if (low >= jnd.low || high <= jnd.high) return Noticed::kPerhaps;
+  return Noticed::kUndecided;
+}
 
 // Returns the sum of the forces of both hands along an axis, or an empty result if there are no
 // hands.
@@ -194,16 +207,7 @@ ApparentImpedance FitImpedance(std::span<const double> position, std::span<const
 PerceivedQuantity Perceive(PerceivedQuantity q) {
   q.difference = (q.b - q.a) / std::abs(q.a);
   q.error = std::hypot(q.error_a * q.b / q.a, q.error_b) / std::abs(q.a);
-  const double size = std::abs(q.difference);
-  // Without repeats, the standard errors are unknown, so the verdict is based only on the values.
-  const bool known =
-      size == size && !(q.error >= q.jnd.high) && !(q.error_a >= q.jnd.high * std::abs(q.a));
-  if (!known)
-    q.noticed = Noticed::kUndecided;
-  else if (size < q.jnd.low)
-    q.noticed = Noticed::kNo;
-  else
-    q.noticed = size > q.jnd.high ? Noticed::kYes : Noticed::kPerhaps;
+  q.noticed = VerdictOn(std::abs(q.difference), q.error, q.jnd);
   return q;
 }
 

@@ -265,14 +265,15 @@ TEST(Perceived, IsJudgedByTheJustNoticeableDifferenceAndItsOwnError) {
     q.jnd = {0.07, 0.10};
     return Perceive(q);
   };
-  EXPECT_EQ(judge(10.5, 0.1).noticed, Noticed::kNo);
-  EXPECT_EQ(judge(9.2, 0.1).noticed, Noticed::kPerhaps);
+  // With a = 10, the intervals are 5 ± 1.2 %, 6 ± 11 %, 6 ± 2.4 %, 12 ± 3.7 % and 20 ± 2.6 %.
+  EXPECT_EQ(judge(10.5, 0.05).noticed, Noticed::kNo);
+  EXPECT_EQ(judge(10.6, 0.46).noticed, Noticed::kUndecided);
+  EXPECT_EQ(judge(10.6, 0.1).noticed, Noticed::kPerhaps);
+  EXPECT_EQ(judge(11.2, 0.15).noticed, Noticed::kPerhaps);
   EXPECT_EQ(judge(12, 0.1).noticed, Noticed::kYes);
-  EXPECT_EQ(judge(10.5, 2).noticed, Noticed::kUndecided);
   EXPECT_NEAR(judge(12, 0.1).difference, 0.2, 1e-12);
   EXPECT_NEAR(judge(12, 0.1).error, std::hypot(0.12, 0.1) / 10, 1e-12);
-  const double none = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(judge(none, 0.1).noticed, Noticed::kUndecided);
+  EXPECT_EQ(judge(std::nan(""), 0.1).noticed, Noticed::kUndecided);
 }
 
 // ---- whole runs
@@ -482,8 +483,7 @@ TEST(Fidelity, IsDescribedInWords) {
   EXPECT_EQ(text.find("Warning"), std::string::npos) << text;
 }
 
-// If the runs are aligned by time, each run gives a single value, so the standard error of this
-// value is unknown.
+// If the runs are aligned by time, each run gives a single value, whose error is unknown.
 TEST(Fidelity, WarnsWhereErrorsAreNotKnown) {
   const std::vector<FidelitySignals> a = {SignalsOf(Task{.noise = 0.1})},
                                      b = {SignalsOf(Task{.viscosity = 30, .noise = 0.1})};
@@ -492,7 +492,7 @@ TEST(Fidelity, WarnsWhereErrorsAreNotKnown) {
   const std::string text = FidelityText(report, "real", "emulated");
   EXPECT_NE(text.find("Warning: A run has fewer than two cycles"), std::string::npos) << text;
   EXPECT_NE(text.find("noticeable, error unknown"), std::string::npos) << text;
-  EXPECT_NE(FidelityJson(report, "a", "b").find("fewer than two cycles"), std::string::npos);
+  EXPECT_NE(FidelityJson(report, "a", "b").find("fewer than two cycles"), text.npos);
   EXPECT_TRUE(CompareFidelity(a, b).warnings.empty());
 }
 
