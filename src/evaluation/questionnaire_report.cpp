@@ -1,5 +1,7 @@
 #include "evaluation/questionnaire_report.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <map>
@@ -148,7 +150,8 @@ std::string ShiftTable(const char* counted, const ShiftSummaries& summaries) {
               RightAligned(ProbabilityText(s.adjusted), 9);
     text += '\n';
   }
-  return text;
+  const std::string few = TooFewText(summaries);
+  return few.empty() ? text : text + "  " + few + "\n";
 }
 
 std::string NeutralTable(const ConditionSummary& c, Condition condition) {
@@ -208,6 +211,16 @@ SurveyReport SummariseSurvey(const std::vector<StoredAnswer>& answers) {
 }
 
 std::string ProbabilityText(double p) { return p < 1e-4 ? "<0.0001" : Figure("%.4f", p); }
+
+std::string TooFewText(const ShiftSummaries& summaries) {
+  int most = 0;
+  for (const ShiftSummary& summary : summaries) most = std::max(most, summary.count);
+  const double smallest = std::ldexp(1.0, 1 - most);
+  if (most == 0 || smallest <= 0.05) return "";
+  return "The smallest p that " + std::to_string(most) + (most == 1 ? " value" : " values") +
+         " can give is " + ProbabilityText(smallest) +
+         ". So few people cannot show a difference, and no 95 % interval exists.";
+}
 
 std::string SurveyTable(const SurveyReport& report) {
   std::string text;

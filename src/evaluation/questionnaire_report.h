@@ -61,6 +61,10 @@ SurveyReport SummariseSurvey(const std::vector<StoredAnswer>& answers);
 // Returns "0.0312" or "<0.0001". A probability is never shown as zero.
 std::string ProbabilityText(double p);
 
+// Returns a sentence if every statement has so few values that no test can show a difference,
+// otherwise an empty text. The smallest two-sided p of n values is 2^(1 − n).
+std::string TooFewText(const ShiftSummaries& summaries);
+
 // Returns a table for the terminal.
 std::string SurveyTable(const SurveyReport& report);
 

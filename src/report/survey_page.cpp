@@ -43,7 +43,8 @@ std::string ShiftTable(const char* counted, const char* zero, const ShiftSummari
                     EscapeMarkup(ProbabilityText(s.test.p)),
                     EscapeMarkup(ProbabilityText(s.adjusted))});
   }
-  return HtmlTable(rows);
+  const std::string few = TooFewText(summaries);
+  return HtmlTable(rows) + (few.empty() ? few : "<p>" + few + "</p>\n");
 }
 
 std::string PeopleText(const ConditionSummary& c) {
@@ -51,8 +52,9 @@ std::string PeopleText(const ConditionSummary& c) {
                      std::to_string(c.female) + " female, " + std::to_string(c.male) + " male, " +
                      std::to_string(c.other) + " other";
   if (c.ages > 0)
-    text += "; age " + Figure("%.2f", c.age_mean) + " ± " + Figure("%.2f", c.age_deviation) +
-            " years (" + std::to_string(c.ages) + " gave their age)";
+    text += "; age " + Figure("%.1f", c.age_mean) +
+            (c.ages > 1 ? " ± " + Figure("%.1f", c.age_deviation) : "") + " years (" +
+            std::to_string(c.ages) + " gave their age)";
   return text + ".";
 }
 

@@ -358,6 +358,22 @@ TEST(SurveyReport, ComparesPairsByTheSignedRanks) {
   EXPECT_EQ(report.paired[2].test.p, 1);
 }
 
+// Of n values with the same sign, the two-sided signed-rank test gives p = 2 / 2^n.
+TEST(SurveyReport, StatesThatFewPeopleCannotShowADifference) {
+  std::vector<StoredAnswer> answers;
+  const auto few_with = [&](std::size_t people) {
+    while (answers.size() < people)
+      answers.push_back(
+          Stored(std::string(1, static_cast<char>('A' + answers.size())), Condition::kEmulated, 1));
+    return TooFewText(SummariseSurvey(answers).conditions[0].from_neutral) +
+           TooFewText(SummariseSurvey(answers).conditions[1].from_neutral);
+  };
+  EXPECT_TRUE(few_with(1).starts_with("The smallest p that 1 value can give is 1.0000."));
+  EXPECT_TRUE(few_with(5).starts_with("The smallest p that 5 values can give is 0.0625."));
+  EXPECT_NE(SurveyTable(SummariseSurvey(answers)).find(few_with(5)), std::string::npos);
+  EXPECT_EQ(few_with(6), "");
+}
+
 TEST(SurveyReport, RefusesNoPeopleAndDuplicates) {
   EXPECT_THROW(SummariseSurvey({}), InputError);
   EXPECT_THROW(
