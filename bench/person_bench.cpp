@@ -115,7 +115,8 @@ void TimePerson(bool quick) {
     const person::BodyLoads now = dynamics.Evaluate(motion, sample);
     muscle.push_back(Microseconds([&] { check += MusclesAt(arms, motion, now); }));
     if (i % 50 == 0)
-      persons.push_back(Microseconds([&] { check += sampler.Evaluate(sample, motion).reached; }));
+      persons.push_back(
+          Microseconds([&] { check += sampler.Evaluate(sample, motion).back().miss; }));
   }
   Heading("Evaluation of the person (wall-clock time of one core)");
   std::printf("%-42s %9s %9s\n", "part", "p50 us", "p99 us");

@@ -24,10 +24,10 @@ std::vector<person::BodyMotion> MotionsOf(const std::vector<person::Posture>& po
 
 std::vector<Frame> FramesOf(const PersonSetup& setup, std::span<const PersonSample> samples,
                             std::size_t i, const WorkPattern& work,
-                            const person::SampledBody& body) {
+                            const std::vector<person::SampledPosture>& persons) {
   std::vector<Frame> frames;
-  frames.reserve(body.samples.size());
-  for (const person::SampledPosture& one : body.samples)
+  frames.reserve(persons.size());
+  for (const person::SampledPosture& one : persons)
     frames.push_back(
         FrameOfPerson(one, {samples[i].body, ForceRates(samples, i)}, setup.body.sex, work));
   return frames;
@@ -105,9 +105,9 @@ SampledChain RunSampled(const PersonSetup& setup, std::span<const PersonSample> 
   const person::PostureSampler sampler(setup.body, setup.stance, setup.grips);
   SampledChain chain;
   for (std::size_t i = 0; i < samples.size(); i += stride) {
-    const person::SampledBody body = sampler.Evaluate(samples[i].body, nominal.motions[i]);
     chain.at.push_back(i);
-    chain.frames.push_back(FramesOf(setup, samples, i, work, body));
+    chain.frames.push_back(
+        FramesOf(setup, samples, i, work, sampler.Evaluate(samples[i].body, nominal.motions[i])));
     progress(static_cast<double>(i + 1) / static_cast<double>(samples.size()));
   }
   return chain;
@@ -123,12 +123,12 @@ std::optional<person::Interval> IntervalOfKnown(std::vector<double> values) {
 PossiblePersons PossibleAt(const PersonSetup& setup, std::span<const PersonSample> samples,
                            const NominalChain& nominal, std::size_t i) {
   const person::PostureSampler sampler(setup.body, setup.stance, setup.grips);
-  const person::SampledBody body = sampler.Evaluate(samples[i].body, nominal.motions[i]);
+  const auto drawn = sampler.Evaluate(samples[i].body, nominal.motions[i]);
   PossiblePersons persons;
-  persons.frames = FramesOf(setup, samples, i, {}, body);
-  for (std::size_t k = 0; k < body.samples.size(); ++k)
+  persons.frames = FramesOf(setup, samples, i, {}, drawn);
+  for (std::size_t k = 0; k < drawn.size(); ++k)
     persons.skeletons.push_back(
-        person::SkeletonOf(sampler.model(k), body.samples[k].q, setup.stance.width));
+        person::SkeletonOf(sampler.model(k), drawn[k].q, setup.stance.width));
   return persons;
 }
 

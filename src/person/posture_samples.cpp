@@ -14,9 +14,9 @@ constexpr int kDraws = kPriorVariations + kBodyVariations + 1;
 
 // Draws antithetic pairs. Every second person has the negated numbers of the previous person. The
 // mean of each varied parameter is therefore its nominal value.
-std::vector<std::array<double, kDraws>> DrawPersons(std::uint64_t seed) {
+std::vector<std::array<double, kDraws>> DrawPersons() {
   std::vector<std::array<double, kDraws>> z(kPostureSamples);
-  RandomStream random(seed, "posture");
+  RandomStream random(1, "posture");
   for (std::size_t i = 0; i < z.size(); i += 2) {
     for (std::size_t d = 0; d < kDraws; ++d) {
       z[i][d] = random.Normal();
@@ -24,36 +24,6 @@ std::vector<std::array<double, kDraws>> DrawPersons(std::uint64_t seed) {
     }
   }
   return z;
-}
-
-// Computes the interval of one quantity from all members that ForEach visits.
-template <class T, class Get, class ForEach>
-void Summarise(std::vector<SampledPosture>& samples, Get get, ForEach for_each, Range<T>* range) {
-  std::vector<std::vector<double>> values;
-  for (SampledPosture& sample : samples) {
-    std::size_t i = 0;
-    for_each(get(sample), [&](const char*, double& value) {
-      if (values.size() <= i) values.emplace_back();
-      values[i++].push_back(value);
-    });
-  }
-  std::vector<Interval> intervals;
-  for (auto& of_one : values) intervals.push_back(IntervalOf(of_one));
-  const auto write = [&](T& to, double Interval::*member) {
-    std::size_t i = 0;
-    for_each(to, [&](const char*, double& value) { value = intervals[i++].*member; });
-  };
-  write(range->median, &Interval::median);
-  write(range->low, &Interval::low);
-  write(range->high, &Interval::high);
-}
-
-template <class F>
-void ForEachLoad(BodyLoads& loads, F f) {
-  for (int i = 0; i < kBodyJoints; ++i) f("", loads.torque[i]);
-  for (int i = 0; i < kBodyJoints; ++i) f("", loads.overload[i]);
-  for (auto& moment : loads.shoulder_moment) f("", moment);
-  ForEachBodyValue(loads, f);
 }
 
 }  // namespace
@@ -117,9 +87,10 @@ Anthropometry VariedBody(const BodySpec& spec, std::span<const double> z, double
 }
 
 PostureSampler::PostureSampler(const BodySpec& spec, const Stance& stance,
-                               const std::array<Grip, kHands>& grips, const PosturePrior& prior,
-                               const PostureSpread& spread, std::uint64_t seed) {
-  for (const auto& numbers : DrawPersons(seed)) {
+                               const std::array<Grip, kHands>& grips) {
+  const PosturePrior prior = DefaultPrior();
+  const PostureSpread spread;
+  for (const auto& numbers : DrawPersons()) {
     const std::span<const double> z = numbers;
     const PosturePrior varied = VariedPrior(prior, z.first(kPriorVariations), spread);
     const BodyModel model(VariedBody(spec, z.subspan(kPriorVariations, kBodyVariations),
@@ -143,19 +114,13 @@ SampledPosture PostureSampler::EvaluatePerson(std::size_t i, const BodySample& s
   return one;
 }
 
-SampledBody PostureSampler::Evaluate(const BodySample& sample, const BodyMotion& nominal) const {
-  SampledBody body;
-  for (std::size_t i = 0; i < persons_.size(); ++i) {
-    body.samples.push_back(EvaluatePerson(i, sample, nominal));
-    body.reached += body.samples.back().reached;
-  }
-  Summarise(
-      body.samples, [](SampledPosture& s) -> PostureAngles& { return s.angles; },
-      [](PostureAngles& angles, auto f) { ForEachAngle(angles, f); }, &body.angles);
-  Summarise(
-      body.samples, [](SampledPosture& s) -> BodyLoads& { return s.loads; },
-      [](BodyLoads& loads, auto f) { ForEachLoad(loads, f); }, &body.loads);
-  return body;
+std::vector<SampledPosture> PostureSampler::Evaluate(const BodySample& sample,
+                                                     const BodyMotion& nominal) const {
+  std::vector<SampledPosture> samples;
+  samples.reserve(persons_.size());
+  for (std::size_t i = 0; i < persons_.size(); ++i)
+    samples.push_back(EvaluatePerson(i, sample, nominal));
+  return samples;
 }
 
 }  // namespace predictor::person

@@ -2,7 +2,6 @@
 // body's posture.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -49,30 +48,17 @@ struct SampledPosture {
   double miss = 0;       // largest distance by which a hand misses its handle [m]
 };
 
-template <class T>
-struct Range {
-  T median, low, high;
-};
-
-struct SampledBody {
-  std::vector<SampledPosture> samples;  // kPostureSamples samples; the same people at every time
-  Range<PostureAngles> angles;
-  Range<BodyLoads> loads;
-  int reached = 0;  // number of samples whose hands reach the handles
-};
-
 // Draws kPostureSamples people once, in pairs of opposite deviations, and evaluates all of them at
 // each time (common random numbers).
 class PostureSampler {
  public:
-  PostureSampler(const BodySpec& spec, const Stance& stance, const std::array<Grip, kHands>& grips,
-                 const PosturePrior& prior = DefaultPrior(), const PostureSpread& spread = {},
-                 std::uint64_t seed = 1);
+  PostureSampler(const BodySpec& spec, const Stance& stance, const std::array<Grip, kHands>& grips);
 
   // `nominal` is the motion of the nominal posture. All samples use the velocities and
   // accelerations of the nominal motion. The postures of the samples are solved for this time
-  // alone, starting from the nominal posture.
-  SampledBody Evaluate(const BodySample& sample, const BodyMotion& nominal) const;
+  // alone, starting from the nominal posture. Returns the kPostureSamples people, who are the same
+  // at every time.
+  std::vector<SampledPosture> Evaluate(const BodySample& sample, const BodyMotion& nominal) const;
   // Evaluates one of the kPostureSamples people.
   SampledPosture EvaluatePerson(std::size_t i, const BodySample& sample,
                                 const BodyMotion& nominal) const;

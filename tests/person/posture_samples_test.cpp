@@ -88,6 +88,53 @@ BodySample SomeHandles(const Stance& stance, RandomStream* random) {
   return sample;
 }
 
+template <class T>
+struct Range {
+  T median, low, high;
+};
+
+// Returns the interval of each quantity that ForEach visits.
+template <class T, class ForEach>
+Range<T> Summarise(std::vector<SampledPosture>& samples, T SampledPosture::*get, ForEach for_each) {
+  std::vector<std::vector<double>> values;
+  for (SampledPosture& sample : samples) {
+    std::size_t i = 0;
+    for_each(sample.*get, [&](const char*, double& value) {
+      if (values.size() <= i) values.emplace_back();
+      values[i++].push_back(value);
+    });
+  }
+  std::vector<Interval> intervals;
+  for (auto& of_one : values) intervals.push_back(IntervalOf(of_one));
+  const auto write = [&](T& to, double Interval::*member) {
+    std::size_t i = 0;
+    for_each(to, [&](const char*, double& value) { value = intervals[i++].*member; });
+  };
+  Range<T> range;
+  write(range.median, &Interval::median);
+  write(range.low, &Interval::low);
+  write(range.high, &Interval::high);
+  return range;
+}
+
+template <class F>
+void ForEachLoad(BodyLoads& loads, F f) {
+  for (int i = 0; i < kBodyJoints; ++i) f("", loads.torque[i]);
+  for (int i = 0; i < kBodyJoints; ++i) f("", loads.overload[i]);
+  for (auto& moment : loads.shoulder_moment) f("", moment);
+  ForEachBodyValue(loads, f);
+}
+
+Range<PostureAngles> AnglesOfAll(std::vector<SampledPosture>& samples) {
+  return Summarise(samples, &SampledPosture::angles,
+                   [](PostureAngles& angles, auto f) { ForEachAngle(angles, f); });
+}
+
+Range<BodyLoads> LoadsOfAll(std::vector<SampledPosture>& samples) {
+  return Summarise(samples, &SampledPosture::loads,
+                   [](BodyLoads& loads, auto f) { ForEachLoad(loads, f); });
+}
+
 using Table = std::map<std::string, std::vector<Judged>>;
 
 template <class T, class ForEach>
@@ -137,14 +184,14 @@ void AddPerson(const VirtualPerson& person, const PostureSampler& sampler,
   BodyMotion true_motion, estimate;
   true_motion.q = posture.q;
   estimate.q = nominal.Solve(sample).q;
-  const SampledBody sampled = sampler.Evaluate(sample, estimate);
+  std::vector<SampledPosture> sampled = sampler.Evaluate(sample, estimate);
   const BodyLoads loads =
       BodyDynamics(body, stance, person.muscle_arm).Evaluate(true_motion, sample);
   Add(
-      "angle ", AnglesOf(body, posture.q, stance.width), sampled.angles,
+      "angle ", AnglesOf(body, posture.q, stance.width), AnglesOfAll(sampled),
       [](PostureAngles& a, auto f) { ForEachAngle(a, f); }, table);
   Add(
-      "load ", loads, sampled.loads,
+      "load ", loads, LoadsOfAll(sampled),
       [](BodyLoads& l, auto f) {
         for (int i = kTorsoFlexion; i < kBodyJoints; ++i) f(JointName(i), l.torque[i]);
         ForEachBodyValue(l, f);
@@ -261,17 +308,19 @@ TEST(PostureSampler, DrawsTheSamePersonsEachTime) {
   BodyMotion motion;
   motion.q = nominal.Solve(sample).q;
   const PostureSampler a(Man(), SomeStance(), Grips(true)), b(Man(), SomeStance(), Grips(true));
-  const SampledBody first = a.Evaluate(sample, motion), again = a.Evaluate(sample, motion),
-                    other = b.Evaluate(sample, motion);
-  ASSERT_EQ(first.samples.size(), 64u);
-  EXPECT_EQ(first.reached, 64);
-  for (std::size_t i = 0; i < first.samples.size(); ++i) {
-    EXPECT_EQ(first.samples[i].q, again.samples[i].q);
-    EXPECT_EQ(first.samples[i].q, other.samples[i].q);
+  std::vector<SampledPosture> first = a.Evaluate(sample, motion),
+                              again = a.Evaluate(sample, motion),
+                              other = b.Evaluate(sample, motion);
+  ASSERT_EQ(first.size(), 64u);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    EXPECT_TRUE(first[i].reached);
+    EXPECT_EQ(first[i].q, again[i].q);
+    EXPECT_EQ(first[i].q, other[i].q);
   }
+  const Range<BodyLoads> loads = LoadsOfAll(first);
   const int elbow = Of(0, ArmJoint::kElbowFlexion);
-  EXPECT_LT(first.loads.low.torque[elbow], first.loads.median.torque[elbow]);
-  EXPECT_LT(first.loads.median.torque[elbow], first.loads.high.torque[elbow]);
+  EXPECT_LT(loads.low.torque[elbow], loads.median.torque[elbow]);
+  EXPECT_LT(loads.median.torque[elbow], loads.high.torque[elbow]);
 }
 
 // If the prior has no spread, the drawn person must be the nominal one. A measured length must not
