@@ -33,8 +33,8 @@ inline int ElbowScore(double flexion) {
 // Returns 1 for an upright trunk, 2 for a bend of up to 20° in either direction, 3 for up to 60°
 // forwards or more than 20° backwards, and 4 for more than 60°. RULA's worksheet does not include
 // extension, so extension is scored as in REBA (design choice).
-inline int TrunkFlexionScore(double flexion, const PostureThresholds& thresholds) {
-  if (std::abs(flexion) <= thresholds.neutral) return 1;
+inline int TrunkFlexionScore(double flexion) {
+  if (std::abs(flexion) <= kDeclaredThresholds.neutral) return 1;
   if (flexion > Degrees(60)) return 4;
   return std::abs(flexion) > Degrees(20) ? 3 : 2;
 }

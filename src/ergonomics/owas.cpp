@@ -41,10 +41,10 @@ OwasScore AssessOwas(OwasBack back, OwasArms arms, OwasLegs legs, OwasLoad load)
 Action OwasAction(int category) { return {category, kOwasActions[category - 1]}; }
 
 OwasScore AssessOwas(const BodyPosture& body, const ArmPosture& left, const ArmPosture& right,
-                     double load, const PostureThresholds& thresholds) {
-  const bool bent = Exceeds(body.trunk_flexion, thresholds.bent_back);
-  const bool twisted = Exceeds(body.trunk_twist, thresholds.bent_back) ||
-                       Exceeds(body.trunk_side_bend, thresholds.bent_back);
+                     double load) {
+  const bool bent = Exceeds(body.trunk_flexion, kDeclaredThresholds.bent_back);
+  const bool twisted = Exceeds(body.trunk_twist, kDeclaredThresholds.bent_back) ||
+                       Exceeds(body.trunk_side_bend, kDeclaredThresholds.bent_back);
   return AssessOwas(static_cast<OwasBack>(1 + bent + 2 * twisted),
                     static_cast<OwasArms>(1 + left.over_shoulder + right.over_shoulder),
                     OwasLegsOf(body),

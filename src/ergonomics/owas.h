@@ -43,9 +43,8 @@ OwasScore AssessOwas(OwasBack back, OwasArms arms, OwasLegs legs, OwasLoad load)
 
 // Returns the classes of a measured posture. Kneeling and walking cannot be detected from the
 // posture. In these cases, pass the classes to the function above. A knee counts as bent beyond 30°
-// (design choice). Does not allocate.
+// (design choice). The load is in kg. Does not allocate.
 OwasScore AssessOwas(const BodyPosture& body, const ArmPosture& left, const ArmPosture& right,
-                     double load,  // [kg]
-                     const PostureThresholds& thresholds = kDeclaredThresholds);
+                     double load);
 
 }  // namespace predictor::ergonomics

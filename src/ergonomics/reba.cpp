@@ -16,11 +16,12 @@ constexpr std::string_view kRebaC[12] = {
     "111233456777", "122344566778", "233345677888", "344456788999", "444567889999", "66678899AAAA",
     "7778999AABBB", "8889AAAAABBB", "999AAABBBCCC", "AAABBBBCCCCC", "BBBBCCCCCCCC", "CCCCCCCCCCCC"};
 
-int RebaNeck(const BodyPosture& body, const PostureThresholds& thresholds) {
-  const bool bent = body.neck_flexion > Degrees(20) || body.neck_flexion < -thresholds.neutral;
+int RebaNeck(const BodyPosture& body) {
+  const bool bent =
+      body.neck_flexion > Degrees(20) || body.neck_flexion < -kDeclaredThresholds.neutral;
   return 1 + bent +
-         (Exceeds(body.neck_twist, thresholds.side_or_twist) ||
-          Exceeds(body.neck_side_bend, thresholds.side_or_twist));
+         (Exceeds(body.neck_twist, kDeclaredThresholds.side_or_twist) ||
+          Exceeds(body.neck_side_bend, kDeclaredThresholds.side_or_twist));
 }
 
 int RebaLegs(const BodyPosture& body) {
@@ -31,16 +32,16 @@ int RebaLegs(const BodyPosture& body) {
   return (body.on_both_feet ? 1 : 2) + knees;
 }
 
-int RebaUpperArm(const ArmPosture& arm, const PostureThresholds& thresholds) {
-  const bool out = Exceeds(arm.upper_arm_abduction, thresholds.abducted) ||
-                   Exceeds(arm.upper_arm_rotation, thresholds.rotated);
+int RebaUpperArm(const ArmPosture& arm) {
+  const bool out = Exceeds(arm.upper_arm_abduction, kDeclaredThresholds.abducted) ||
+                   Exceeds(arm.upper_arm_rotation, kDeclaredThresholds.rotated);
   return std::max(
       1, UpperArmFlexionScore(arm.upper_arm_flexion) + arm.shoulder_raised + out - arm.supported);
 }
 
-int RebaWrist(const ArmPosture& arm, const PostureThresholds& thresholds) {
-  const bool turned = Exceeds(arm.wrist_deviation, thresholds.side_or_twist) ||
-                      Exceeds(arm.forearm_rotation, thresholds.near_end_of_twist);
+int RebaWrist(const ArmPosture& arm) {
+  const bool turned = Exceeds(arm.wrist_deviation, kDeclaredThresholds.side_or_twist) ||
+                      Exceeds(arm.forearm_rotation, kDeclaredThresholds.near_end_of_twist);
   return 1 + Exceeds(arm.wrist_flexion, Degrees(15)) + turned;
 }
 
@@ -68,21 +69,20 @@ Action RebaAction(int reba) {
   return {5, "The risk is very high; action is necessary now."};
 }
 
-RebaScores AssessReba(const BodyPosture& body, const ArmPosture& arm, const Exertion& exertion,
-                      const PostureThresholds& thresholds) {
+RebaScores AssessReba(const BodyPosture& body, const ArmPosture& arm, const Exertion& exertion) {
   RebaScores s;
-  s.neck = RebaNeck(body, thresholds);
-  s.trunk = TrunkFlexionScore(body.trunk_flexion, thresholds) +
-            (Exceeds(body.trunk_twist, thresholds.side_or_twist) ||
-             Exceeds(body.trunk_side_bend, thresholds.side_or_twist));
+  s.neck = RebaNeck(body);
+  s.trunk = TrunkFlexionScore(body.trunk_flexion) +
+            (Exceeds(body.trunk_twist, kDeclaredThresholds.side_or_twist) ||
+             Exceeds(body.trunk_side_bend, kDeclaredThresholds.side_or_twist));
   s.legs = RebaLegs(body);
   s.posture_a = RebaTableA(s.neck, s.trunk, s.legs);
   s.load = RebaLoad(exertion);
   s.score_a = s.posture_a + s.load;
 
-  s.upper_arm = RebaUpperArm(arm, thresholds);
+  s.upper_arm = RebaUpperArm(arm);
   s.lower_arm = ElbowScore(arm.elbow_flexion);
-  s.wrist = RebaWrist(arm, thresholds);
+  s.wrist = RebaWrist(arm);
   s.posture_b = RebaTableB(s.upper_arm, s.lower_arm, s.wrist);
   s.coupling = static_cast<int>(exertion.coupling);
   s.score_b = s.posture_b + s.coupling;

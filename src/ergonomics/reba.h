@@ -38,8 +38,7 @@ struct RebaScores {
 
 // Returns the scores of the posture with this arm. A person's score is the higher of the two arms'
 // scores. Does not allocate.
-RebaScores AssessReba(const BodyPosture& body, const ArmPosture& arm, const Exertion& exertion,
-                      const PostureThresholds& thresholds = kDeclaredThresholds);
+RebaScores AssessReba(const BodyPosture& body, const ArmPosture& arm, const Exertion& exertion);
 
 // These functions return cells of the printed tables. The arguments must be within the axes of the
 // tables.

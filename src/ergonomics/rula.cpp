@@ -17,20 +17,20 @@ constexpr std::string_view kRulaB[6] = {"132334556677", "232345556777", "3334455
 constexpr std::string_view kRulaC[8] = {"1233455", "2234455", "3334456", "3334566",
                                         "4445677", "4456677", "5566777", "5567777"};
 
-int RulaWrist(const ArmPosture& arm, const PostureThresholds& thresholds) {
+int RulaWrist(const ArmPosture& arm) {
   const double flexion = std::abs(arm.wrist_flexion);
-  const int bent = flexion > Degrees(15) ? 3 : flexion > thresholds.neutral ? 2 : 1;
-  return bent + Exceeds(arm.wrist_deviation, thresholds.side_or_twist);
+  const int bent = flexion > Degrees(15) ? 3 : flexion > kDeclaredThresholds.neutral ? 2 : 1;
+  return bent + Exceeds(arm.wrist_deviation, kDeclaredThresholds.side_or_twist);
 }
 
-int RulaNeck(const BodyPosture& body, const PostureThresholds& thresholds) {
+int RulaNeck(const BodyPosture& body) {
   const double flexion = body.neck_flexion;
-  const int bent = flexion < -thresholds.neutral ? 4
-                   : flexion > Degrees(20)       ? 3
-                   : flexion > Degrees(10)       ? 2
-                                                 : 1;
-  return bent + Exceeds(body.neck_twist, thresholds.side_or_twist) +
-         Exceeds(body.neck_side_bend, thresholds.side_or_twist);
+  const int bent = flexion < -kDeclaredThresholds.neutral ? 4
+                   : flexion > Degrees(20)                ? 3
+                   : flexion > Degrees(10)                ? 2
+                                                          : 1;
+  return bent + Exceeds(body.neck_twist, kDeclaredThresholds.side_or_twist) +
+         Exceeds(body.neck_side_bend, kDeclaredThresholds.side_or_twist);
 }
 
 int RulaForce(const Exertion& exertion) {
@@ -61,24 +61,23 @@ Action RulaAction(int grand) {
   return {4, "Investigate and make changes immediately."};
 }
 
-RulaScores AssessRula(const BodyPosture& body, const ArmPosture& arm, const Exertion& exertion,
-                      const PostureThresholds& thresholds) {
+RulaScores AssessRula(const BodyPosture& body, const ArmPosture& arm, const Exertion& exertion) {
   RulaScores s;
-  s.upper_arm =
-      std::max(1, UpperArmFlexionScore(arm.upper_arm_flexion) + arm.shoulder_raised +
-                      Exceeds(arm.upper_arm_abduction, thresholds.abducted) - arm.supported);
+  s.upper_arm = std::max(1, UpperArmFlexionScore(arm.upper_arm_flexion) + arm.shoulder_raised +
+                                Exceeds(arm.upper_arm_abduction, kDeclaredThresholds.abducted) -
+                                arm.supported);
   s.lower_arm = ElbowScore(arm.elbow_flexion) + arm.across_or_out;
-  s.wrist = RulaWrist(arm, thresholds);
-  s.wrist_twist = Exceeds(arm.forearm_rotation, thresholds.near_end_of_twist) ? 2 : 1;
+  s.wrist = RulaWrist(arm);
+  s.wrist_twist = Exceeds(arm.forearm_rotation, kDeclaredThresholds.near_end_of_twist) ? 2 : 1;
   s.posture_a = RulaTableA(s.upper_arm, s.lower_arm, s.wrist, s.wrist_twist);
   s.muscle = exertion.held || exertion.repeated;
   s.force = RulaForce(exertion);
   s.wrist_and_arm = s.posture_a + s.muscle + s.force;
 
-  s.neck = RulaNeck(body, thresholds);
-  s.trunk = TrunkFlexionScore(body.trunk_flexion, thresholds) +
-            Exceeds(body.trunk_twist, thresholds.side_or_twist) +
-            Exceeds(body.trunk_side_bend, thresholds.side_or_twist);
+  s.neck = RulaNeck(body);
+  s.trunk = TrunkFlexionScore(body.trunk_flexion) +
+            Exceeds(body.trunk_twist, kDeclaredThresholds.side_or_twist) +
+            Exceeds(body.trunk_side_bend, kDeclaredThresholds.side_or_twist);
   s.legs = body.on_both_feet ? 1 : 2;
   s.posture_b = RulaTableB(s.neck, s.trunk, s.legs);
   s.neck_trunk_legs = s.posture_b + s.muscle + s.force;

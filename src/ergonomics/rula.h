@@ -41,8 +41,7 @@ struct RulaScores {
 
 // Returns the scores of the posture with this arm. A person's score is the worse of the two arms'
 // scores. Does not allocate.
-RulaScores AssessRula(const BodyPosture& body, const ArmPosture& arm, const Exertion& exertion,
-                      const PostureThresholds& thresholds = kDeclaredThresholds);
+RulaScores AssessRula(const BodyPosture& body, const ArmPosture& arm, const Exertion& exertion);
 
 // These functions return the printed tables, for values within their axes.
 int RulaTableA(int upper_arm, int lower_arm, int wrist, int wrist_twist);
