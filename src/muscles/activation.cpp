@@ -18,54 +18,47 @@ struct Dual {
   MuscleVector gain;  // derivative of the activation with respect to Bᵀλ; 0 at a bound
 };
 
-double CostOf(const ActivationProblem& p, double square, int i, double a) {
-  const double effort = (p.power == 3 ? a * a * a / 3 : 0) + square * a * a / 2;
+double CostOf(const ActivationProblem& p, int i, double a) {
+  const double effort = a * a / 2;
   const double miss = a - p.measured[i];
   return p.weight[i] * effort + p.trust[i] * miss * miss / 2;
 }
 
 // Returns the activation at which the marginal cost equals `gain`, and the activation's derivative
 // with respect to `gain`.
-double ActivationAt(const ActivationProblem& p, double square, int i, double gain, double* slope) {
-  const double w = p.weight[i];
+double ActivationAt(const ActivationProblem& p, int i, double gain, double* slope) {
   const double pulled = gain + p.trust[i] * p.measured[i];
   // `v` is twice the coefficient of the squared activation in the cost.
-  const double v = p.trust[i] + square * w;
-  if (p.power == 2) {
-    *slope = 1 / v;
-    return pulled / v;
-  }
-  const double root = std::sqrt(v * v + 4 * w * std::max(pulled, 0.0));
-  *slope = 1 / root;
-  return pulled > 0 ? 2 * pulled / (v + root) : pulled / v;
+  const double v = p.trust[i] + p.weight[i];
+  *slope = 1 / v;
+  return pulled / v;
 }
 
-// `reserve_scale` is r²/c. `square` is the weight of the activation's square in the cost.
-Dual DualAt(const ActivationProblem& p, const ArmVector& reserve_scale, double square,
-            const ArmVector& lambda) {
+// `reserve_scale` is r²/c.
+Dual DualAt(const ActivationProblem& p, const ArmVector& reserve_scale, const ArmVector& lambda) {
   Dual dual;
   const MuscleVector gains = p.torque.transpose() * lambda;
   const ArmVector reserve = reserve_scale.cwiseProduct(lambda);
   dual.value = lambda.dot(reserve) / 2 - lambda.dot(p.target);
   for (int i = 0; i < kMuscles; ++i) {
     double slope = 0;
-    const double free = ActivationAt(p, square, i, gains[i], &slope);
+    const double free = ActivationAt(p, i, gains[i], &slope);
     const double a = std::clamp(free, p.lower[i], p.upper[i]);
     const bool bound = free < p.lower[i] || free > p.upper[i];
     dual.activation[i] = a;
     dual.gain[i] = bound ? 0 : slope;
-    dual.value += gains[i] * a - CostOf(p, square, i, a);
+    dual.value += gains[i] * a - CostOf(p, i, a);
   }
   dual.slope = p.torque * dual.activation + reserve - p.target;
   return dual;
 }
 
 // Runs Newton's method from result->multiplier.
-void Minimise(const ActivationProblem& problem, double square, ActivationResult* result) {
+void Minimise(const ActivationProblem& problem, ActivationResult* result) {
   const ArmVector reserve_scale = problem.reserve_unit.cwiseAbs2() / problem.reserve_cost;
   const double small = kTolerance * std::max(1.0, problem.target.cwiseAbs().maxCoeff());
   ArmVector& lambda = result->multiplier;
-  Dual dual = DualAt(problem, reserve_scale, square, lambda);
+  Dual dual = DualAt(problem, reserve_scale, lambda);
   for (int n = 0; n < kMaxIterations; ++n) {
     result->residual = dual.slope.cwiseAbs().maxCoeff();
     result->converged = result->residual <= small;
@@ -80,10 +73,10 @@ void Minimise(const ActivationProblem& problem, double square, ActivationResult*
     constexpr double kMinShare = 1e-4;  // required share of the decrease that the slope predicts
     const double rounding = 1e-14 * (1 + std::abs(dual.value));
     double share = 1;
-    Dual next = DualAt(problem, reserve_scale, square, lambda + step);
+    Dual next = DualAt(problem, reserve_scale, lambda + step);
     while (share > 1e-10 && next.value > dual.value + kMinShare * share * descent + rounding) {
       share /= 2;
-      next = DualAt(problem, reserve_scale, square, lambda + share * step);
+      next = DualAt(problem, reserve_scale, lambda + share * step);
     }
     lambda += share * step;
     dual = next;
@@ -97,18 +90,10 @@ void Minimise(const ActivationProblem& problem, double square, ActivationResult*
 ActivationResult Activate(const ActivationProblem& problem) noexcept {
   ActivationResult result;
   result.multiplier.setZero();
-  double square = 1;
-  Minimise(problem, square, &result);
-  // The cubic cost is approached from the quadratic one step by step, so that Newton's method
-  // starts near the solution.
-  while (problem.power == 3 && square > kSquareShare) {
-    square = std::max(square / 4, kSquareShare);
-    Minimise(problem, square, &result);
-  }
+  Minimise(problem, &result);
   result.cost =
       problem.reserve_cost / 2 * result.reserve.cwiseQuotient(problem.reserve_unit).squaredNorm();
-  for (int i = 0; i < kMuscles; ++i)
-    result.cost += CostOf(problem, square, i, result.activation[i]);
+  for (int i = 0; i < kMuscles; ++i) result.cost += CostOf(problem, i, result.activation[i]);
   return result;
 }
 

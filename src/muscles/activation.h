@@ -6,7 +6,7 @@
 
 namespace predictor::muscles {
 
-// Minimises Σ w a^p / p + Σ v (a - e)² / 2 + c Σ (s / r)² / 2 subject to B a + s = τ and lower ≤ a
+// Minimises Σ w a² / 2 + Σ v (a - e)² / 2 + c Σ (s / r)² / 2 subject to B a + s = τ and lower ≤ a
 // ≤ upper. The reserve s is the part of the torques that the muscles cannot produce. The reserve
 // makes every problem solvable, and must be shown wherever activations are shown.
 struct ActivationProblem {
@@ -14,17 +14,11 @@ struct ActivationProblem {
   ArmVector target = ArmVector::Zero();    // τ: torques minus those of the passive forces [N·m]
   MuscleVector lower = MuscleVector::Zero(), upper = MuscleVector::Ones();
   MuscleVector weight = MuscleVector::Ones();  // w > 0
-  // 2 gives the least sum of squares. 3 (Crowninshield & Brand 1981, R) distributes the load more
-  // evenly. For p = 3, the share kSquareShare of the cost for p = 2 is added, which bounds the
-  // slope.
-  int power = 2;
   // Measured activations e with weights v ≥ 0 (0 if not measured).
   MuscleVector measured = MuscleVector::Zero(), trust = MuscleVector::Zero();
   ArmVector reserve_unit = ArmVector::Ones();  // r [N·m]
   double reserve_cost = 10;                    // c (D)
 };
-
-inline constexpr double kSquareShare = 0.01;  // (D)
 
 struct ActivationResult {
   MuscleVector activation;

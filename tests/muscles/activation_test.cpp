@@ -31,17 +31,6 @@ TEST(Activation, TwoMusclesShareByTheirTorque) {
   EXPECT_NEAR(result.cost, 20 * 20 / 1000.0 / 2, 1e-6);
 }
 
-// With p = 3, the activation is proportional to the square root: a_i = τ √b_i / Σ b^(3/2).
-TEST(Activation, CubesSpreadTheLoad) {
-  ActivationProblem problem = TwoMuscles(20);
-  problem.power = 3;
-  const ActivationResult result = Activate(problem);
-  ASSERT_TRUE(result.converged);
-  const double sum = 30 * std::sqrt(30) + 10 * std::sqrt(10);
-  EXPECT_NEAR(result.activation[0], 20 * std::sqrt(30) / sum, kSquareShare);
-  EXPECT_NEAR(result.activation[1], 20 * std::sqrt(10) / sum, kSquareShare);
-}
-
 // The stronger muscle reaches its bound, and the other one produces the rest.
 TEST(Activation, TheRestOfASaturatedMuscleGoesToTheOther) {
   const ActivationResult result = Activate(TwoMuscles(36));
@@ -120,8 +109,8 @@ double KktViolation(const ActivationProblem& p, const ActivationResult& r) {
                  .maxCoeff());
   for (int i = 0; i < kMuscles; ++i) {
     const double a = r.activation[i];
-    const double slope = p.weight[i] * (p.power == 2 ? a : a * a + kSquareShare * a) +
-                         p.trust[i] * (a - p.measured[i]) - p.torque.col(i).dot(r.multiplier);
+    const double slope =
+        p.weight[i] * a + p.trust[i] * (a - p.measured[i]) - p.torque.col(i).dot(r.multiplier);
     worst = std::max({worst, p.lower[i] - a, a - p.upper[i]});
     if (a > p.lower[i] + 1e-12)
       worst = std::max(worst, slope);  // a smaller activation would reduce the cost
@@ -137,7 +126,6 @@ TEST(Activation, MeetsTheOptimalityConditions) {
   int iterations = 0, saturated = 0;
   for (int n = 0; n < 2000; ++n) {
     ActivationProblem problem = RandomProblem(arm, &random);
-    problem.power = n % 2 == 0 ? 2 : 3;
     if (n % 5 == 0) {
       problem.lower.setConstant(0.05);
       for (int i = 0; i < kMuscles; ++i) {
