@@ -97,11 +97,11 @@ std::vector<NamedFile> OpenSimFiles(const PersonSetup& setup,
         "No hand holds a handle for 0.1 s without interruption, so there is no motion "
         "to export.");
   const auto part = samples.subspan(begin, count);
-  const NominalChain chain = RunNominal(setup, part, {}, [](double) {});
+  NominalPerson nominal(setup, {});
   std::vector<person::BodyVector> postures;
-  for (const person::Posture& posture : chain.postures) postures.push_back(posture.q);
+  for (const PersonSample& sample : part) postures.push_back(nominal.Solve(sample).q);
   const auto motions = person::SmoothMotion(postures, 1 / kSampleRate);
-  const person::BodyModel model(setup.body);
+  const person::BodyModel& model = nominal.model();
   std::vector<std::string> joints, moments;
   for (int i = 0; i < kBodyJoints; ++i) {
     joints.emplace_back(person::JointName(i));
