@@ -8,22 +8,18 @@
 #include "core/text.h"
 #include "progress.h"
 #include "recorded_run.h"
-#include "recording/provenance.h"
 #include "recording/reader.h"
+#include "restored_scenario.h"
 #include "screen.h"
 
 namespace predictor {
 namespace {
 
-// The function writes the recorded models to `folder`, because the continuation needs these models,
-// too.
-StoppedRun ReadStop(const ContinueCommandOptions& options, const TemporaryFolder& folder) {
-  RecordingReader reader(options.recording);
-  ShowProblem(reader.problem());
-  const Scenario scenario = RestoreScenario(reader.header(), folder.path());
-  Progress progress("Reading", static_cast<double>(reader.count()), options.quiet);
+StoppedRun ReadStop(const ContinueCommandOptions& options, const Scenario& scenario,
+                    RecordingReader* reader) {
+  Progress progress("Reading", static_cast<double>(reader->count()), options.quiet);
   try {
-    return FindStop(&reader, scenario,
+    return FindStop(reader, scenario,
                     [&](std::uint64_t tick) { progress.Update(static_cast<double>(tick)); });
   } catch (const InputError& error) {
     throw InputError(options.recording, error.what());
@@ -38,8 +34,10 @@ int ContinueCommand(const ContinueCommandOptions& options) {
   const std::string page = options.page.empty() ? stem + ".continued.html" : options.page;
   options.CheckWritable();
   options.RefuseToReplace(page);
-  const TemporaryFolder folder;
-  const StoppedRun run = ReadStop(options, folder);
+  RecordingReader reader(options.recording);
+  ShowProblem(reader.problem());
+  const RestoredScenario restored(reader.header());  // the continuation reads the models, too
+  const StoppedRun run = ReadStop(options, restored.Get(), &reader);
   const HandSpec& hand = run.scenario.operator_.hand;
   const ArmDistribution arm =
       options.arm.empty() ? ArmDistribution::Prior(hand) : ArmDistribution::Read(options.arm, hand);

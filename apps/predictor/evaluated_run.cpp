@@ -6,8 +6,8 @@
 #include "models/urdf.h"
 #include "progress.h"
 #include "recorded_run.h"
-#include "recording/provenance.h"
 #include "recording/reader.h"
+#include "restored_scenario.h"
 #include "scenario/paths.h"
 #include "scenario/scenario_io.h"
 #include "screen.h"
@@ -18,8 +18,8 @@ namespace {
 // Returns no masses if the recorded models cannot be read, and prints the reason.
 std::optional<assessment::SceneMasses> MassesOf(const RecordingHeader& header) {
   try {
-    const TemporaryFolder folder;
-    const Scenario scenario = RestoreScenario(header, folder.path());
+    const RestoredScenario restored(header);
+    const Scenario& scenario = restored.Get();
     const CobotSpec& cobot = scenario.cobot;
     const UrdfModel urdf = ReadUrdf(ResolveModelPath(cobot.model, scenario.folder()),
                                     cobot.remove_links, scenario.folder());

@@ -1,6 +1,7 @@
 #include "analysis/identify/identify.h"
 
 #include <filesystem>
+#include <optional>
 
 #include "commands.h"
 #include "core/error.h"
@@ -9,6 +10,7 @@
 #include "recorded_run.h"
 #include "recording/provenance.h"
 #include "recording/reader.h"
+#include "restored_scenario.h"
 #include "scenario/paths.h"
 #include "scenario/scenario_io.h"
 
@@ -63,8 +65,8 @@ void WriteScenario(const IdentifyCommandOptions& options, const RecordingHeader&
 }
 
 Identification IdentifyRecording(const IdentifyCommandOptions& options, RecordingReader* reader) {
-  const TemporaryFolder folder;
-  Scenario nominal = options.scenario.empty() ? RestoreScenario(reader->header(), folder.path())
+  std::optional<RestoredScenario> restored;  // the identification reads the recorded models
+  Scenario nominal = options.scenario.empty() ? restored.emplace(reader->header()).Get()
                                               : LoadScenario(FindShipped(options.scenario));
   nominal.rate = 1 / reader->header().dt;
   IdentifyOptions how;

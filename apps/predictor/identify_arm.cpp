@@ -7,8 +7,8 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "recorded_run.h"
-#include "recording/provenance.h"
 #include "recording/reader.h"
+#include "restored_scenario.h"
 
 namespace predictor {
 namespace {
@@ -16,9 +16,8 @@ namespace {
 void AddRecordingOf(const std::string& file, bool quiet, ArmIdentifier* identifier) {
   RecordingReader reader(file);
   ShowProblem(reader.problem());
-  const TemporaryFolder folder;
   try {
-    identifier->Begin(RestoreScenario(reader.header(), folder.path()), reader.header().dt);
+    identifier->Begin(RestoredScenario(reader.header()).Get(), reader.header().dt);
   } catch (const InputError& error) {
     throw InputError(file, error.what());
   }

@@ -1,10 +1,8 @@
 #include "recorded_run.h"
 
 #include <cmath>
-#include <cstdlib>
 #include <ctime>
 #include <future>
-#include <stdexcept>
 #include <system_error>
 
 #include "core/error.h"
@@ -164,19 +162,6 @@ bool RunRecording::Close(bool quiet, bool has_report) {
   if (!quiet && whole && !has_report)
     screen.Print("To make a report, run: predictor report " + file_);
   return status.ended_why.empty();
-}
-
-TemporaryFolder::TemporaryFolder() {
-  std::string name = (std::filesystem::temp_directory_path() / "predictor-XXXXXX").string();
-  if (!mkdtemp(name.data()))
-    throw std::runtime_error("a temporary folder could not be created in " +
-                             std::filesystem::temp_directory_path().string());
-  path_ = name;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
 }
 
 }  // namespace predictor

@@ -98,17 +98,4 @@ class RunRecording final : public SnapshotSink {
   std::optional<OpenRecording> open_;
 };
 
-// A folder for this process only. The destructor removes the folder.
-class TemporaryFolder {
- public:
-  TemporaryFolder();  // throws std::runtime_error
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 }  // namespace predictor

@@ -17,8 +17,8 @@
 #include "progress.h"
 #include "quit.h"
 #include "recorded_run.h"
-#include "recording/provenance.h"
 #include "recording/reader.h"
+#include "restored_scenario.h"
 #include "screen.h"
 #include "viewer/admission.h"
 #include "viewer/viewer_process.h"
@@ -190,8 +190,8 @@ int ReplayCommand(const RecordingOptions& recording, const ServeOptions& options
   BoundOutput();
   RecordingReader reader(recording.recording);
   ShowProblem(reader.problem());
-  const TemporaryFolder folder;
-  const Scenario scenario = RestoreScenario(reader.header(), folder.path());
+  const RestoredScenario restored(reader.header());
+  const Scenario& scenario = restored.Get();
   Shared<RunBoard> board;
   Shared<RunMailbox> mailbox;
   Player player(&reader, &*board, &*mailbox);
@@ -225,8 +225,8 @@ int VerifyCommand(const RecordingOptions& options) {
         Formatted("The recording was made by version %s, but this program is version %s. The "
                   "replay may therefore differ.",
                   Printable(reader.header().program_version).c_str(), PREDICTOR_VERSION));
-  const TemporaryFolder folder;
-  const Scenario scenario = RestoreScenario(reader.header(), folder.path());
+  const RestoredScenario restored(reader.header());
+  const Scenario& scenario = restored.Get();
   Progress progress("Verifying", static_cast<double>(reader.count()), options.quiet);
   const Verification result = Verify(
       &reader, scenario, [&](std::uint64_t ticks) { progress.Update(static_cast<double>(ticks)); });

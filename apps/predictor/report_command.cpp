@@ -64,12 +64,8 @@ RunInfo Describe(const std::string& file, const RestoredScenario& restored,
 std::unique_ptr<ContactCollector> MakeContactCollector(const RestoredScenario& restored,
                                                        ContactRun* run) {
   if (!HasContact(run->scenario)) return nullptr;
-  if (!restored.scenario()) {
-    run->problem = "Nothing is known about contact: " + restored.problem();
-    return nullptr;
-  }
-  run->scenario = *restored.scenario();
   try {
+    run->scenario = restored.Get();
     return std::make_unique<ContactCollector>(run->scenario);
   } catch (const InputError& error) {
     run->problem = std::string("Nothing is known about contact: ") + error.what();
