@@ -94,12 +94,10 @@ void AddWork(CLI::App* evaluate, EvaluateOptions* o) {
             "Effort with which the hands grip, from 0 (extremely easy) to 10 (extremely hard), for "
             "DUET; no sensor measures it")
       ->check(CLI::Range(0.0, 10.0));
-  AddOption(evaluate, "Work", "--limits", &o->limits, "FILE.csv",
-            "Limits of postures, loads or muscles that you take from a standard, in the form of "
-            "assets/limits_template.csv (repeatable)")
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
+  AddRepeatable(
+      evaluate, "Work", "--limits", &o->limits, "FILE.csv",
+      "Limits of postures, loads or muscles that you take from a standard, in the form of "
+      "assets/limits_template.csv (repeatable)");
   AddOption(evaluate, "Work", "--contact-limits", &o->contact_limits, "FILE.csv",
             "Limits of force on the body for unintended contact, in the form of "
             "assets/contact_limits_template.csv");
@@ -116,11 +114,8 @@ void AddEvaluate(CLI::App* app, Request* r) {
   AddPerson(evaluate, o);
   AddOption(evaluate, "Person", "--against", &o->against, "RECORDING",
             "Also compare with this recording of another design, for the same person");
-  AddOption(evaluate, "Person", "--against-track", &o->against_tracks, "FILE",
-            "Like --track, for the recording that --against names (repeatable)")
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
+  AddRepeatable(evaluate, "Person", "--against-track", &o->against_tracks, "FILE",
+                "Like --track, for the recording that --against names (repeatable)");
   evaluate
       ->add_flag("--intervals,!--no-intervals", o->intervals,
                  "Also evaluate 64 possible postures and bodies, for intervals and probabilities "
@@ -266,13 +261,13 @@ void AddPopulation(CLI::App* app, Request* r) {
   AddOption(population, "Study", "--persons", &o->persons, "NUMBER", "Number of simulated people")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
-  AddOption(
+  AddRepeatable(
       population, "Study", "--heights", &o->heights, "M,M,...",
       "Heights of the handles above the ground; each height is a design [default: the scenario's]")
       ->delimiter(',')
       ->check(CLI::Range(0.1, 2.5));
-  AddOption(population, "Study", "--set", &o->set, "KEY=VALUE",
-            "Change a value of all scenarios; repeatable");
+  AddRepeatable(population, "Study", "--set", &o->set, "KEY=VALUE",
+                "Change a value of all scenarios (repeatable)");
   AddOption(population, "Study", "--population-seed", &o->seed, "NUMBER",
             "Seed of the simulated people; the same number gives the same people")
       ->capture_default_str();
@@ -298,8 +293,8 @@ void AddReproduce(CLI::App* app, Request* r) {
             "Folder of the project's scenarios")
       ->capture_default_str();
   AddOption(reproduce, "Experiments", "--only", &o->only, "NAME", "Run this experiment only");
-  AddOption(reproduce, "Experiments", "--set", &o->set, "KEY=VALUE",
-            "Change a value of all scenarios, for example simulation.engine=dart; repeatable");
+  AddRepeatable(reproduce, "Experiments", "--set", &o->set, "KEY=VALUE",
+                "Change a value of all scenarios, for example simulation.engine=dart (repeatable)");
   AddOption(reproduce, "Output", "-o,--output", &o->folder, "FOLDER",
             "Folder for the page, its figures and its numbers")
       ->capture_default_str();

@@ -57,6 +57,16 @@ CLI::Option* AddOption(CLI::App* app, const char* group, const char* name, T* va
                        const char* type, const char* what) {
   return app->add_option(name, *value, what)->type_name(type)->group(group);
 }
+// Adds an option that the user can repeat. Each time, the option takes one value. Without this
+// limit, the option would also take the files that follow the value.
+template <class T>
+CLI::Option* AddRepeatable(CLI::App* app, const char* group, const char* name,
+                           std::vector<T>* values, const char* type, const char* what) {
+  return AddOption(app, group, name, values, type, what)
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+}
 
 // Options that several commands share.
 void AddPersonOverrides(CLI::App* app, std::vector<std::string>* set);

@@ -16,11 +16,8 @@ void AddRunTime(CLI::App* app, ScenarioOptions* o) {
 
 void AddRecordOptions(CLI::App* app, RecordOptions* o, const char* what) {
   AddOption(app, "Recording", "--record", &o->file, "FILE.mcap", what);
-  AddOption(app, "Recording", "--label", &o->labels, "KEY=VALUE",
-            "Store a label in the recording (repeatable)")
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
+  AddRepeatable(app, "Recording", "--label", &o->labels, "KEY=VALUE",
+                "Store a label in the recording (repeatable)");
   AddOption(app, "Person", "--participant", &o->participant, "FILE",
             "The person in a study: pseudonym, consent, handedness, body");
 }

@@ -32,22 +32,17 @@ CLI::Option* AddPort(CLI::App* app, const char* group, const char* name, std::ui
 }
 
 void AddPersonOverrides(CLI::App* app, std::vector<std::string>* set) {
-  AddOption(app, "Person", "--set", set, "KEY=VALUE",
-            "Override a value of the recorded scenario, for example operator.body.height=1.62 "
-            "(repeatable)")
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
+  AddRepeatable(app, "Person", "--set", set, "KEY=VALUE",
+                "Override a value of the recorded scenario, for example operator.body.height=1.62 "
+                "(repeatable)");
 }
 
 void AddPerson(CLI::App* app, PersonOptions* o) {
   AddPersonOverrides(app, &o->set);
-  AddOption(app, "Person", "--track", &o->tracks, "FILE",
-            "Measured head, elbows or signals: a table (CSV), or a mapping (YAML) of a CSV, TRC or "
-            "C3D file (repeatable)")
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
+  AddRepeatable(
+      app, "Person", "--track", &o->tracks, "FILE",
+      "Measured head, elbows or signals: a table (CSV), or a mapping (YAML) of a CSV, TRC or "
+      "C3D file (repeatable)");
 }
 
 void AddRecording(CLI::App* app, std::string* recording) {
@@ -56,12 +51,9 @@ void AddRecording(CLI::App* app, std::string* recording) {
 
 void AddScenario(CLI::App* app, ScenarioOptions* o) {
   app->add_option("scenario", o->file, "Scenario file (YAML)")->required();
-  AddOption(app, "Scenario", "--set", &o->set, "KEY=VALUE",
-            "Override a value of the scenario, for example operator.script.1.duration=2 "
-            "(repeatable)")
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
+  AddRepeatable(app, "Scenario", "--set", &o->set, "KEY=VALUE",
+                "Override a value of the scenario, for example operator.script.1.duration=2 "
+                "(repeatable)");
 }
 
 void AddQuiet(CLI::App* app, OutputOptions* o) {
@@ -101,10 +93,10 @@ void AddPageOptions(CLI::App* app, ServeOptions* o) {
   certificate->needs(
       AddOption(app, group, "--key", &o->page.key, "FILE", "Private key of the certificate (PEM)")
           ->needs(certificate));
-  AddOption(app, group, "--name", &o->page.names, "HOST",
-            "Additional host name of this machine (repeatable)");
-  AddOption(app, group, "--foxglove-origin", &o->page.foxglove_origins, "ORIGIN",
-            "Page that may connect as Foxglove, for example https://app.foxglove.dev")
+  AddRepeatable(app, group, "--name", &o->page.names, "HOST",
+                "Additional host name of this machine (repeatable)");
+  AddRepeatable(app, group, "--foxglove-origin", &o->page.foxglove_origins, "ORIGIN",
+                "Page that may connect as Foxglove, for example https://app.foxglove.dev")
       ->check(CLI::Validator(NoOrigin, ""));
 }
 

@@ -194,6 +194,21 @@ class Written : public testing::Test {
   std::string said_, printed_;
 };
 
+// A repeatable option takes one value each time, so the file after the value is the command's.
+TEST_F(Written, ARepeatableOptionDoesNotTakeTheScenario) {
+  const std::string scenario = Path("none.yaml");
+  const std::vector<std::vector<std::string>> commands = {
+      {"population", "-o", Path("study"), "--set", "duration=1", scenario},
+      {"population", "-o", Path("study"), "--heights", "0.8,1.0", scenario},
+      {"run", "--name", "laboratory", scenario},
+      {"run", "--foxglove-origin", "https://app.foxglove.dev", scenario},
+      {"simulate", "--label", "a=b", "--label", "c=d", scenario}};
+  for (const std::vector<std::string>& command : commands) {
+    EXPECT_EQ(Do(command), kBadInput) << command[0];
+    EXPECT_NE(said_.find(scenario), std::string::npos) << command[0] << said_;
+  }
+}
+
 TEST_F(Written, FilesAreReplacedByForceOnly) {
   const std::string recording = Path("a.mcap"), json = Path("a.json"), page = Path("a.html");
   const std::vector<std::vector<std::string>> commands = {
