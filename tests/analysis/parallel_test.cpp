@@ -16,6 +16,15 @@ TEST(DoInParallel, DoesEachPieceOnce) {
   for (const auto& times : done) EXPECT_EQ(times, 1);
 }
 
+TEST(DoInParallel, UsesTheCoresWithoutANumberOfWorkers) {
+  std::vector<std::atomic<int>> done(100);
+  DoInParallel(
+      done.size(), 0, [&](std::size_t i) { ++done[i]; }, [] {});
+  for (const auto& times : done) EXPECT_EQ(times, 1);
+  DoInParallel(
+      0, 0, [](std::size_t) { FAIL(); }, [] {});
+}
+
 TEST(DoInParallel, ReportsTheErrorAndEndsTheRest) {
   std::atomic<int> done = 0;
   const auto piece = [&](std::size_t i) {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
-#include <thread>
 #include <utility>
 
 #include "analysis/continuation/joint_loads.h"
@@ -232,14 +231,12 @@ Continuation Continue(const StoppedRun& run, const ArmDistribution& arms,
                       const ContinueOptions& options) {
   CheckContinuable(run.scenario);
   Continuation c = Describe(run, arms, options);
-  const unsigned workers = options.workers > 0 ? static_cast<unsigned>(options.workers)
-                                               : std::max(1U, std::thread::hardware_concurrency());
   const auto draws = static_cast<std::size_t>(options.draws);
   std::atomic<std::size_t> done = 0;
   std::vector<ContinuedRun> runs(draws + (options.reference ? 1 : 0));
   ContinuerPool pool(run, options.recorded_operator);
   DoInParallel(
-      runs.size(), std::min(workers, static_cast<unsigned>(runs.size())),
+      runs.size(), options.workers,
       [&](std::size_t i) {
         auto continuer = pool.Take();
         if (i < draws) {
@@ -259,7 +256,7 @@ Continuation Continue(const StoppedRun& run, const ArmDistribution& arms,
   }
   c.runs = std::move(runs);
   if (options.joint_loads)
-    AddJointLoads(run, workers, &c);
+    AddJointLoads(run, options.workers, &c);
   else
     c.no_joint_use = "it was not requested";
   return c;

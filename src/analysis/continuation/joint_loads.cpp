@@ -32,7 +32,7 @@ double JointUse(const assessment::PersonSetup& setup, const TickRecord& stop,
 
 }  // namespace
 
-void AddJointLoads(const StoppedRun& stopped, unsigned workers, Continuation* c) {
+void AddJointLoads(const StoppedRun& stopped, int workers, Continuation* c) {
   const auto missing = assessment::MissingForPosture(stopped.scenario);
   if (!missing.empty()) {
     c->no_joint_use = missing.front();
@@ -44,7 +44,7 @@ void AddJointLoads(const StoppedRun& stopped, unsigned workers, Continuation* c)
     for (ContinuedRun& run : c->runs) runs.push_back(&run);
     if (c->reference) runs.push_back(&*c->reference);
     DoInParallel(
-        runs.size(), std::max(1U, workers),
+        runs.size(), workers,
         [&](std::size_t i) {
           if (runs[i]->peak_force > 0)
             runs[i]->joint_use = JointUse(setup, stopped.stop(), runs[i]->at_peak);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <thread>
 
 #include "analysis/hazard_study/run_measures.h"
 #include "analysis/hazard_study/run_store.h"
@@ -191,8 +190,6 @@ HazardStudy MakeHazardStudy(const HazardStudyOptions& options) {
   CheckFiles(options.scenarios);
   std::filesystem::create_directories(options.folder);
   HazardRunStore store(options.folder / "runs.csv");
-  const unsigned workers = options.workers > 0 ? static_cast<unsigned>(options.workers)
-                                               : std::max(1U, std::thread::hardware_concurrency());
   const auto seeds = static_cast<std::size_t>(options.seeds);
   std::atomic<std::size_t> done = 0;
   const std::vector<StudyChoice> controllers = StudiedControllers(), hazards = StudiedHazards();
@@ -202,7 +199,7 @@ HazardStudy MakeHazardStudy(const HazardStudyOptions& options) {
     options.progress(static_cast<double>(done) / static_cast<double>(count));
   };
   DoInParallel(
-      pieces.size(), workers,
+      pieces.size(), options.workers,
       [&](std::size_t i) {
         const std::size_t c = i / hazards.size();
         pieces[i] =
@@ -216,7 +213,7 @@ HazardStudy MakeHazardStudy(const HazardStudyOptions& options) {
 
   std::atomic<int> kept = 0;
   DoInParallel(
-      pieces.size() * seeds, workers,
+      pieces.size() * seeds, options.workers,
       [&](std::size_t i) {
         Piece& piece = pieces[i / seeds];
         ++done;

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <string_view>
-#include <thread>
 
 #include "analysis/parallel.h"
 #include "analysis/population/run_store.h"
@@ -148,13 +147,11 @@ PopulationStudy MakePopulationStudy(const PopulationOptions& options) {
   std::vector<Prepared> designs = PrepareDesigns(options, study.people.front());
   for (Prepared& prepared : designs) prepared.design.runs.resize(study.people.size());
 
-  const unsigned workers = options.workers > 0 ? static_cast<unsigned>(options.workers)
-                                               : std::max(1U, std::thread::hardware_concurrency());
   const std::size_t count = designs.size() * study.people.size();
   std::atomic<std::size_t> done = 0;
   std::atomic<int> kept = 0;
   DoInParallel(
-      count, workers,
+      count, options.workers,
       [&](std::size_t i) {
         Prepared& prepared = designs[i % designs.size()];
         const SampledPerson& person = study.people[i / designs.size()];

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <optional>
 #include <system_error>
-#include <thread>
 
 #include "analysis/check/check.h"
 #include "analysis/parallel.h"
@@ -86,10 +85,8 @@ class Work {
   }
 
   void Do() {
-    const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
-    const unsigned count = options_.workers > 0 ? static_cast<unsigned>(options_.workers) : cores;
     DoInParallel(
-        items_.size(), count, [this](std::size_t i) { DoOne(items_[i]); },
+        items_.size(), 0, [this](std::size_t i) { DoOne(items_[i]); },
         [this] { options_.progress(static_cast<double>(done_) / total_, "stability map"); });
     for (const auto& [from, to] : copies_) {
       const double value = to->value;

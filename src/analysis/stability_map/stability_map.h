@@ -74,7 +74,6 @@ struct MapOptions {
   std::filesystem::path folder;  // folder of results and pictures; created if necessary
   StiffnessRange range;
   double growth_time = kGrowthTime;  // [s]
-  int workers = 0;                   // 0: the number of cores
   bool only_walls = false;           // takes seconds instead of minutes
   // Only the caller's thread calls this.
   std::function<void(double share, const std::string& what)> progress = [](double,
