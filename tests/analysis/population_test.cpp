@@ -3,10 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "analysis/population/run_store.h"
+#include "analysis/population/run_json.h"
 #include "analysis/scenarios.h"
 #include "core/error.h"
 #include "core/random.h"
@@ -266,23 +265,26 @@ TEST(Output, JsonFitsItsSchemaAndTablesAreComplete) {
   EXPECT_NE(PopulationPage(study, "1").find("RULA"), std::string::npos);
 }
 
-TEST(RunStore, FindsAddedRunsAndSkipsATruncatedLine) {
-  const test::TemporaryFolder folder;
-  const std::filesystem::path file = folder.path() / "runs.jsonl";
-  PopulationRun run = MadeUp(1, 0).designs[0].runs[0];
+TEST(RunJson, IsReadBackOrRefused) {
+  using Json = nlohmann::ordered_json;
+  PopulationRun run = MadeUp(1, 0).designs[0].runs[0], found;
   run.values[2] = std::nan("");
-  PopulationRunStore(file).Add("key", run);
-  std::ofstream(file, std::ios::app) << "{\"key\": \"ke";
-  PopulationRunStore again(file);
-  PopulationRun found;
-  found.person = 1;
-  EXPECT_FALSE(again.Find("other", &found));
-  ASSERT_TRUE(again.Find("key", &found));
-  EXPECT_EQ(TextOf(found), TextOf(run));
-  again.Add("next", run);
-  found = {};
-  found.person = 1;
-  EXPECT_TRUE(PopulationRunStore(file).Find("next", &found));
+  const std::string text = JsonOf(run).dump();
+  const Json json = Json::parse(text);
+  ASSERT_TRUE(ReadRun(json, &found));
+  EXPECT_EQ(JsonOf(found).dump(), text);
+  EXPECT_TRUE(std::isnan(found.values[2]));
+  for (const auto& [member, value] : json.items()) {
+    Json damaged = json;
+    damaged[member] = "no number";
+    EXPECT_FALSE(ReadRun(damaged, &found)) << member;
+    damaged.erase(member);
+    EXPECT_FALSE(ReadRun(damaged, &found)) << member;
+  }
+  Json unknown = json;
+  unknown["cause"] = kStopCauses;
+  EXPECT_FALSE(ReadRun(unknown, &found));
+  EXPECT_EQ(JsonOf(found).dump(), text);
 }
 
 TEST(Study, RunsAndContinuesWhereItEnded) {
@@ -305,7 +307,7 @@ TEST(Study, RunsAndContinuesWhereItEnded) {
   options.persons = 3;
   const PopulationStudy more = MakePopulationStudy(options);
   EXPECT_EQ(more.kept, 4);
-  EXPECT_EQ(TextOf(more.designs[1].runs[1]), TextOf(study.designs[1].runs[1]));
+  EXPECT_EQ(JsonOf(more.designs[1].runs[1]).dump(), JsonOf(study.designs[1].runs[1]).dump());
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "population.html"));
 }
 

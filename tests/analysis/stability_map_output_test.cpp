@@ -1,10 +1,7 @@
 // Tests the stored results of the stability map and its page.
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <cmath>
-#include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -13,9 +10,8 @@
 #include <vector>
 
 #include "analysis/extents.h"
+#include "analysis/stability_map/point_json.h"
 #include "analysis/stability_map/stability_map.h"
-#include "analysis/stability_map/store.h"
-#include "core/error.h"
 #include "support/temporary_folder.h"
 
 namespace predictor {
@@ -35,72 +31,21 @@ MapPoint SomePoint() {
   return point;
 }
 
-TEST(MapStore, KeepsFinishedPointsAfterTruncation) {
-  const test::TemporaryFolder folder;
-  const fs::path file = folder.path() / "points.jsonl";
+TEST(PointJson, IsReadBackOrRefused) {
+  const MapPoint point = SomePoint();
   MapPoint read;
-  {
-    MapStore store(file);
-    EXPECT_FALSE(store.Find("a", &read));
-    store.Add("a", SomePoint());
-    store.Add("b", SomePoint());
+  ASSERT_TRUE(ReadPoint(nlohmann::ordered_json::parse(JsonOf(point).dump()), &read));
+  EXPECT_EQ(read.value, point.value);
+  ASSERT_TRUE(read.predicted.critical());
+  EXPECT_EQ(read.predicted.critical()->stiffness, 218.25);
+  ASSERT_EQ(read.found.samples.size(), point.found.samples.size());
+  for (std::size_t k = 0; k < point.found.samples.size(); ++k) {
+    EXPECT_EQ(read.found.samples[k].growth.rate, point.found.samples[k].growth.rate);
+    EXPECT_EQ(read.found.samples[k].growth.limited, point.found.samples[k].growth.limited);
+    EXPECT_EQ(read.found.samples[k].growth.stopped, point.found.samples[k].growth.stopped);
   }
-  // This is the state of the file if the program was killed while it wrote the second line.
-  fs::resize_file(file, fs::file_size(file) - 40);
-  {
-    MapStore store(file);
-    ASSERT_TRUE(store.Find("a", &read));
-    EXPECT_FALSE(store.Find("b", &read));
-    store.Add("c", read);
-  }
-  MapStore store(file);
-  for (const char* key : {"a", "c"}) {
-    ASSERT_TRUE(store.Find(key, &read)) << key;
-    const MapPoint point = SomePoint();
-    EXPECT_EQ(read.value, point.value);
-    ASSERT_TRUE(read.predicted.critical());
-    EXPECT_EQ(read.predicted.critical()->stiffness, 218.25);
-    ASSERT_EQ(read.found.samples.size(), point.found.samples.size());
-    for (std::size_t k = 0; k < point.found.samples.size(); ++k) {
-      EXPECT_EQ(read.found.samples[k].growth.rate, point.found.samples[k].growth.rate);
-      EXPECT_EQ(read.found.samples[k].growth.limited, point.found.samples[k].growth.limited);
-      EXPECT_EQ(read.found.samples[k].growth.stopped, point.found.samples[k].growth.stopped);
-    }
-  }
-}
-
-TEST(MapStore, ReportsAFullDisk) {
-  const test::TemporaryFolder folder;
-  const auto add_without_room = [&] {
-    MapStore store(folder.path() / "points.jsonl");
-    // The maximum size of a file [bytes] also applies to the file that receives the error message.
-    const rlimit limit = {4000, 4000};
-    setrlimit(RLIMIT_FSIZE, &limit);
-    std::signal(SIGXFSZ, SIG_IGN);
-    try {
-      for (int k = 0; k < 100; ++k) store.Add(std::to_string(k), SomePoint());
-    } catch (const InputError& error) {
-      std::fputs(error.what(), stderr);
-      std::_Exit(0);
-    }
-    std::_Exit(1);
-  };
-  EXPECT_EXIT(add_without_room(), testing::ExitedWithCode(0), "disk with free space");
-}
-
-TEST(MapStore, SkipsInvalidPoints) {
-  const test::TemporaryFolder folder;
-  const fs::path file = folder.path() / "points.jsonl";
-  std::ofstream(file) << "no json\n[1]\n{\"key\": 3}\n{\"key\": \"x\", \"value\": \"y\"}\n\n";
-  MapStore store(file);
-  MapPoint read;
-  EXPECT_FALSE(store.Find("x", &read));
-}
-
-TEST(HashOf, IsFowlerNollVo) {
-  EXPECT_EQ(HashOf(""), "cbf29ce484222325");
-  EXPECT_EQ(HashOf("a"), "af63dc4c8601ec8c");
-  EXPECT_EQ(HashOf("foobar"), "85944171f73967e8");
+  EXPECT_FALSE(ReadPoint({{"key", "x"}, {"value", "y"}}, &read));
+  EXPECT_EQ(read.value, point.value);
 }
 
 // ---- plots -------------------------------------------------------------------------------------

@@ -5,8 +5,8 @@
 
 #include "analysis/hazard_study/run_measures.h"
 #include "analysis/hazard_study/run_store.h"
+#include "analysis/json_line_store.h"
 #include "analysis/parallel.h"
-#include "analysis/stability_map/store.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/format.h"
@@ -101,7 +101,7 @@ Piece PieceOf(const std::filesystem::path& file, const StudyChoice& controller,
     // The first run serves as a sample of the program's behaviour, so that the study does not reuse
     // runs of a program with different behaviour.
     piece.first = RunWithHazard(piece.scenario, 1);
-    piece.key = HashOf(SaveScenario(piece.scenario) + TextOf(piece.first));
+    piece.key = HexHash(SaveScenario(piece.scenario) + TextOf(piece.first));
   } catch (const InputError& error) {
     piece.cell.impossible = error.what();
     return piece;

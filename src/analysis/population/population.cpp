@@ -6,9 +6,9 @@
 #include <limits>
 #include <string_view>
 
+#include "analysis/json_line_store.h"
 #include "analysis/parallel.h"
-#include "analysis/population/run_store.h"
-#include "analysis/stability_map/store.h"
+#include "analysis/population/run_json.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/format.h"
@@ -98,7 +98,7 @@ Prepared PreparedDesign(const std::filesystem::path& file, const Scenario& scena
   prepared.object_mass = LoadObject(scenario.object, scenario.folder()).mass;
   // The first run reveals the program's behaviour, so that no outdated run is reused.
   prepared.first = Perform(prepared.scenario, prepared.object_mass, first);
-  prepared.key = HashOf(SaveScenario(prepared.scenario) + TextOf(prepared.first));
+  prepared.key = HexHash(SaveScenario(prepared.scenario) + JsonOf(prepared.first).dump());
   return prepared;
 }
 
@@ -141,7 +141,7 @@ void WriteResults(const PopulationStudy& study, const PopulationOptions& options
 
 PopulationStudy MakePopulationStudy(const PopulationOptions& options) {
   std::filesystem::create_directories(options.folder);
-  PopulationRunStore store(options.folder / "runs.jsonl");
+  JsonLineStore store(options.folder / "runs.jsonl");
   PopulationStudy study;
   study.people = SamplePopulation(options.persons, options.seed);
   std::vector<Prepared> designs = PrepareDesigns(options, study.people.front());
@@ -156,14 +156,14 @@ PopulationStudy MakePopulationStudy(const PopulationOptions& options) {
         Prepared& prepared = designs[i % designs.size()];
         const SampledPerson& person = study.people[i / designs.size()];
         PopulationRun& run = prepared.design.runs[i / designs.size()];
-        const std::string key = prepared.key + Formatted("/bounds/%llu", options.seed * 1ULL);
-        run.person = person.number;
-        if (store.Find(key, &run)) {
+        const std::string key =
+            prepared.key + Formatted("/bounds/%llu/%d", options.seed * 1ULL, person.number);
+        if (const auto* stored = store.Find(key); stored && ReadRun(*stored, &run)) {
           ++kept;
         } else {
           run = person.number == 1 ? prepared.first
                                    : Perform(prepared.scenario, prepared.object_mass, person);
-          store.Add(key, run);
+          store.Add(key, JsonOf(run));
         }
         ++done;
       },

@@ -7,8 +7,9 @@
 #include <system_error>
 
 #include "analysis/check/check.h"
+#include "analysis/json_line_store.h"
 #include "analysis/parallel.h"
-#include "analysis/stability_map/store.h"
+#include "analysis/stability_map/point_json.h"
 #include "analysis/stability_map/wall_map.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -50,7 +51,7 @@ std::string FingerprintOf(const MapBase& base) {
   const World world(hold);
   const HapticLoop loop(world.Linearise(), hold, 1 / hold.rate, LoopModel::kExact);
   text += Exactly(loop.GrowthRate(hold.operator_.hand, base.lead, 1));
-  return HashOf(text);
+  return HexHash(text);
 }
 
 // The points of all pictures as a list of jobs.
@@ -114,7 +115,7 @@ class Work {
                                          // the point
       item.point->impossible = error.what();
     }
-    if (key) store_.Add(*key, *item.point);
+    if (key) store_.Add(*key, JsonOf(*item.point));
     done_ += WorkOf(*item.point);
   }
 
@@ -127,7 +128,7 @@ class Work {
     const std::string key =
         item.wall ? KeyOf(variant, item.wall->Varying()) : KeyOf(variant, point.simulated);
     const double value = point.value;
-    if (store_.Find(key, &point)) {
+    if (const auto* stored = store_.Find(key); stored && ReadPoint(*stored, &point)) {
       point.value = value;
       ++kept_;
       return {};
@@ -141,9 +142,9 @@ class Work {
   }
 
   std::string KeyOf(const Variant& variant, bool simulated) const {
-    return HashOf(fingerprint_ + SaveScenario(variant.scenario) + Exactly(variant.lead) +
-                  Exactly(map_.range.softest) + Exactly(map_.range.stiffest) +
-                  Exactly(simulated ? map_.growth_time : 0));
+    return HexHash(fingerprint_ + SaveScenario(variant.scenario) + Exactly(variant.lead) +
+                   Exactly(map_.range.softest) + Exactly(map_.range.stiffest) +
+                   Exactly(simulated ? map_.growth_time : 0));
   }
 
   std::string KeyOf(const Variant& variant, const Wall& wall) const {
@@ -152,7 +153,7 @@ class Work {
          {variant.lead, static_cast<double>(wall.hand), wall.p_DC.x(), wall.p_DC.y(), wall.p_DC.z(),
           wall.normal.x(), wall.normal.y(), wall.normal.z(), wall.damping, kStiffestWall})
       text += Exactly(x);
-    return HashOf(text);
+    return HexHash(text);
   }
 
   void Predict(const Variant& variant, MapPoint* point) const {
@@ -175,7 +176,7 @@ class Work {
   StabilityMap& map_;
   const MapOptions& options_;
   std::string fingerprint_;
-  MapStore store_;
+  JsonLineStore store_;
   std::vector<Item> items_;
   std::vector<std::pair<const MapPoint*, MapPoint*>> copies_;  // source, destination
   int total_ = 0;
