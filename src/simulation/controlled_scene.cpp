@@ -4,6 +4,7 @@
 #include "core/motion.h"
 #include "models/arm_model.h"
 #include "scenario/operating_rules.h"
+#include "simulation/event_checks.h"
 #include "simulation/landing.h"
 #include "simulation/smooth_friction.h"
 #include "simulation/taped_controller.h"
@@ -77,7 +78,6 @@ ControlledScene::ControlledScene(const Scenario& scenario, const EventSequence& 
                    ? MakeStandby(ContextOf(*scenario.cobot.standby_controller, scenario, *robot_,
                                            end_effector_, posture_))
                    : nullptr),
-      joint_(scenario.object.attachment.joint),
       payload_(scenario.cobot.payload),
       carried_(MakeEngine(scenario, *robot_, has_wrist_sensor(), Holding::kJoint)),
       loose_(events.loosens_attachment() ? std::make_unique<LooseObject>(scenario, *robot_)
@@ -95,7 +95,7 @@ ControlledScene::ControlledScene(const Scenario& scenario, const EventSequence& 
       obstacles_(events.obstacles()),
       absent_(obstacles_) {
   for (int j = 0; j < robot_->dof(); ++j) friction_.push_back(carried_->JointFriction(j));
-  CheckEvents(events);
+  CheckEvents(events, scenario.object.attachment.joint, *controller_, standby_.get());
   if (obstacles_ != 0) RemoveFixtures();
 }
 

@@ -145,13 +145,8 @@ class ControlledScene {
   void AddModelErrors(JointVector* torque) const noexcept;
   void SetGains(double t, bool keeps_force) noexcept;
   void SetBrakes(bool closed) noexcept;
-  void CheckEvents(const EventSequence& events) const;
-  std::string Missing(HazardNeeds needs) const;
   void PlaceObstacles() noexcept;
   void RemoveFixtures() noexcept;
-  void CheckAttachmentEvent(const EventSequence& events, std::size_t i) const;
-  void CheckGripper(const EventSequence& events, std::size_t i) const;
-  static void CheckPickUp(const EventSequence& events, std::size_t i);
   Controller& Acting() const noexcept { return disturbance_.standby ? *standby_ : *controller_; }
   double step() const noexcept { return carried_->step(); }
   void WriteTorque(Engine* engine) const noexcept;
@@ -161,7 +156,6 @@ class ControlledScene {
   double gravity_;  // [m/s²]
   JointVector posture_;
   std::unique_ptr<Controller> controller_, standby_;  // standby_ may be null
-  JointType joint_;                                   // of the attachment
   std::optional<PayloadSpec> payload_;
   std::unique_ptr<Engine> carried_;
   std::unique_ptr<LooseObject> loose_;  // may be null

@@ -1,45 +1,14 @@
-// Whether the events of a scenario can act on its cobot.
+#include "simulation/event_checks.h"
+
 #include <string>
 
 #include "core/error.h"
 #include "core/text.h"
-#include "simulation/controlled_scene.h"
 
 namespace predictor {
+namespace {
 
-void ControlledScene::CheckEvents(const EventSequence& events) const {
-  for (std::size_t i = 0; i < events.size(); ++i) {
-    const std::string path = "events." + std::to_string(i) + ".event";
-    CheckAttachmentEvent(events, i);
-    const std::string missing = Missing(events.kind(i).needs);
-    if (missing.empty()) continue;
-    throw InputError::At(
-        path, Join({path, " is ", events.kind(i).name, ", which would have no effect, because ",
-                    missing, ". Remove the event, or change the cobot."},
-                   ""));
-  }
-}
-
-void ControlledScene::CheckAttachmentEvent(const EventSequence& events, std::size_t i) const {
-  const HazardKind& kind = events.kind(i);
-  const std::string path = "events." + std::to_string(i);
-  const std::string is = path + ".event is " + kind.name;
-  const bool can_slip = joint_ == JointType::kFixed || joint_ == JointType::kSpherical;
-  if (kind.needs == HazardNeeds::kRelease || kind.needs == HazardNeeds::kGrasp)
-    return CheckGripper(events, i);
-  if (kind.needs == HazardNeeds::kMovable || kind.needs == HazardNeeds::kPickUp)
-    return CheckPickUp(events, i);
-  if (kind.needs == HazardNeeds::kSlipping && !can_slip)
-    throw InputError::At(path + ".event",
-                         is + ", but only a fixed or a spherical attachment can slip. Change "
-                              "object.attachment.joint, or use object_breaks_loose.");
-  if (kind.needs == HazardNeeds::kNoEnd && events.duration(i) > 0)
-    throw InputError::At(path + ".duration",
-                         is + " with a duration, but an object that broke loose does not return to "
-                              "the cobot. Remove the duration, or use object_slips.");
-}
-
-void ControlledScene::CheckGripper(const EventSequence& events, std::size_t i) const {
+void CheckGripper(const EventSequence& events, std::size_t i, JointType joint) {
   const std::string path = "events." + std::to_string(i);
   const std::string is = path + ".event is " + events.kind(i).name;
   const bool grasps = events.kind(i).needs == HazardNeeds::kGrasp;
@@ -52,7 +21,7 @@ void ControlledScene::CheckGripper(const EventSequence& events, std::size_t i) c
                     : "stays open until an event closes it. Remove the duration, and add an event "
                       "grasp_object."));
   if (!grasps) return;
-  if (joint_ != JointType::kFixed && joint_ != JointType::kSpherical)
+  if (joint != JointType::kFixed && joint != JointType::kSpherical)
     throw InputError::At(path + ".event",
                          is +
                              ", but only a fixed or a spherical attachment can close again. Change "
@@ -62,7 +31,7 @@ void ControlledScene::CheckGripper(const EventSequence& events, std::size_t i) c
                                                "event release_object before this event.");
 }
 
-void ControlledScene::CheckPickUp(const EventSequence& events, std::size_t i) {
+void CheckPickUp(const EventSequence& events, std::size_t i) {
   const std::string path = "events." + std::to_string(i);
   const std::string is = path + ".event is " + events.kind(i).name;
   if (events.duration(i) > 0)
@@ -80,25 +49,62 @@ void ControlledScene::CheckPickUp(const EventSequence& events, std::size_t i) {
                               "released. Remove one of them.");
 }
 
+void CheckAttachmentEvent(const EventSequence& events, std::size_t i, JointType joint) {
+  const HazardKind& kind = events.kind(i);
+  const std::string path = "events." + std::to_string(i);
+  const std::string is = path + ".event is " + kind.name;
+  const bool can_slip = joint == JointType::kFixed || joint == JointType::kSpherical;
+  if (kind.needs == HazardNeeds::kRelease || kind.needs == HazardNeeds::kGrasp)
+    return CheckGripper(events, i, joint);
+  if (kind.needs == HazardNeeds::kMovable || kind.needs == HazardNeeds::kPickUp)
+    return CheckPickUp(events, i);
+  if (kind.needs == HazardNeeds::kSlipping && !can_slip)
+    throw InputError::At(path + ".event",
+                         is + ", but only a fixed or a spherical attachment can slip. Change "
+                              "object.attachment.joint, or use object_breaks_loose.");
+  if (kind.needs == HazardNeeds::kNoEnd && events.duration(i) > 0)
+    throw InputError::At(path + ".duration",
+                         is + " with a duration, but an object that broke loose does not return to "
+                              "the cobot. Remove the duration, or use object_slips.");
+}
+
 // Returns the part that an event needs and this cobot lacks, or "" if it lacks nothing.
-std::string ControlledScene::Missing(HazardNeeds needs) const {
+std::string MissingPart(HazardNeeds needs, const Controller& controller,
+                        const Controller* standby) {
   switch (needs) {
     case HazardNeeds::kWristSensor:
-      if (has_wrist_sensor()) break;
+      if (controller.uses_wrist_sensor() || (standby != nullptr && standby->uses_wrist_sensor()))
+        break;
       return "cobot.controller does not use a wrist sensor";
     case HazardNeeds::kSetPoint:
-      if (controller_->has_set_point()) break;
+      if (controller.has_set_point()) break;
       return "cobot.controller has no set-point that an event can shift";
     case HazardNeeds::kSprings:
-      if (controller_->has_springs()) break;
+      if (controller.has_springs()) break;
       return "cobot.controller has no springs and dampers";
     case HazardNeeds::kStandby:
-      if (standby_) break;
+      if (standby != nullptr) break;
       return "cobot.standby_controller is missing";
     default:
       break;
   }
   return "";
+}
+
+}  // namespace
+
+void CheckEvents(const EventSequence& events, JointType joint, const Controller& controller,
+                 const Controller* standby) {
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const std::string path = "events." + std::to_string(i) + ".event";
+    CheckAttachmentEvent(events, i, joint);
+    const std::string missing = MissingPart(events.kind(i).needs, controller, standby);
+    if (missing.empty()) continue;
+    throw InputError::At(
+        path, Join({path, " is ", events.kind(i).name, ", which would have no effect, because ",
+                    missing, ". Remove the event, or change the cobot."},
+                   ""));
+  }
 }
 
 }  // namespace predictor
