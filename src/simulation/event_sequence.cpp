@@ -79,34 +79,27 @@ EventSequence::EventSequence(const Scenario& scenario) {
                        RandomStream(scenario.seed, "event " + std::to_string(i)),
                        static_cast<std::uint8_t>(place - std::begin(kHazardKinds) + 1),
                        FixtureOf(scenario, i, kind->needs), MovableOf(scenario, i, kind->needs)});
+    Event& event = events_.back();
+    kind->disturb(*event.parameters, 0, &event.first);
   }
   Reset();
 }
 
 double EventSequence::longest_delay() const {
   double sum = 0;
-  for (const Event& event : events_) {
-    Disturbance d;
-    event.kind->disturb(*event.parameters, 0, &d);
-    sum += d.delay;
-  }
+  for (const Event& event : events_) sum += event.first.delay;
   return sum;
 }
 
 bool EventSequence::loosens_attachment() const {
   return std::ranges::any_of(events_, [](const Event& event) {
-    Disturbance d;
-    event.kind->disturb(*event.parameters, 0, &d);
-    return d.grip != GripLimits() || d.gripper.was_opened();
+    return event.first.grip != GripLimits() || event.first.gripper.was_opened();
   });
 }
 
 bool EventSequence::releases_object() const {
-  return std::ranges::any_of(events_, [](const Event& event) {
-    Disturbance d;
-    event.kind->disturb(*event.parameters, 0, &d);
-    return d.gripper.was_opened();
-  });
+  return std::ranges::any_of(events_,
+                             [](const Event& event) { return event.first.gripper.was_opened(); });
 }
 
 bool EventSequence::picks_up() const {

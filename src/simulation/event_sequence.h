@@ -57,6 +57,7 @@ class EventSequence {
     std::uint8_t number;      // 1 + that of the hazard
     std::uint64_t obstacles;  // that it lets appear: bit = number of the fixture
     int movable;              // that it picks up; −1: none
+    Disturbance first = {};   // its effect when it begins
     double earliest = 0;      // [s]
     bool begun = false, ended = false;
     double begin = 0;  // [s]
