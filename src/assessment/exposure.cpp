@@ -13,7 +13,6 @@
 namespace predictor::assessment {
 namespace {
 
-constexpr double kShift = 8 * 3600;              // [s]
 constexpr std::size_t kStride = 10;              // samples per step of the fatigue model
 constexpr double kStep = kStride / kSampleRate;  // [s]
 
@@ -63,7 +62,7 @@ DamageResult DamageOfRepetitions(const ergonomics::DamageTool& tool, const std::
   DamageResult result = {tool.name, part};
   result.per_run = damage;
   result.day_share = ergonomics::ShareOfReferenceDay(damage, tool.risk);
-  const double shift = ergonomics::DamageOfShift(damage, duration, kShift);
+  const double shift = ergonomics::DamageOfShift(damage, duration);
   result.shift_share = ergonomics::ShareOfReferenceDay(shift, tool.risk);
   result.probability = tool.risk.Probability(shift);
   return result;
@@ -118,7 +117,7 @@ FatigueResult FatigueOfLoad(const std::string& joint, ergonomics::FatigueJoint k
   run();
   result.capacity = state.capacity();
   result.mean_load = std::reduce(coarse.begin(), coarse.end()) / static_cast<double>(coarse.size());
-  while (time < kShift && time <= result.time_to_limit) run();
+  while (time < ergonomics::kShift && time <= result.time_to_limit) run();
   return result;
 }
 

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "assessment/hand_samples.h"
+
 namespace predictor::assessment {
 namespace {
 
 // Limits the memory that a run of unlimited duration needs.
-constexpr std::size_t kMaxSamples = 8 * 3600 * 100;  // a shift
+constexpr auto kMaxSamples = static_cast<std::size_t>(ergonomics::kShift * kSampleRate);
 
 }  // namespace
 

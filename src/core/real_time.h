@@ -10,6 +10,7 @@ inline constexpr int kLoopPriority = 80;  // SCHED_FIFO priority; the watchdog's
 // real-time scheduling. This priority is lower than the priority of the loop, so the process cannot
 // delay the loop.
 inline constexpr int kControllerPriority = 70;
+static_assert(kControllerPriority < kLoopPriority);
 
 // Gives the calling thread real-time scheduling and locks the memory, for the lifetime of this
 // object.

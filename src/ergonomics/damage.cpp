@@ -48,8 +48,8 @@ double ShareOfReferenceDay(double damage, const DamageRisk& risk) {
   return damage / risk.DailyDamage(kReferenceProbability);
 }
 
-double DamageOfShift(double damage_of_run, double run_duration, double shift_duration) {
-  return damage_of_run * shift_duration / run_duration;
+double DamageOfShift(double damage_of_run, double run_duration) {
+  return damage_of_run * kShift / run_duration;
 }
 
 }  // namespace predictor::ergonomics

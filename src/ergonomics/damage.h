@@ -90,9 +90,9 @@ inline constexpr double kReferenceProbability = 0.5;
 // Returns `damage` as a share of the damage of the reference day. The value 0.001 means 0.1 %.
 double ShareOfReferenceDay(double damage, const DamageRisk& risk);
 
-// Returns the damage of a shift in which the run is repeated without a break. Both durations must
-// be above 0.
-double DamageOfShift(double damage_of_run, double run_duration,  // [s]
-                     double shift_duration = 8 * 3600.0);        // [s]
+inline constexpr double kShift = 8 * 3600;  // duration of a shift [s]
+// Returns the damage of a shift in which the run is repeated without a break. The duration of the
+// run [s] must be above 0.
+double DamageOfShift(double damage_of_run, double run_duration);
 
 }  // namespace predictor::ergonomics

@@ -88,10 +88,11 @@ void ForEachBodyValue(Loads& loads, F f) {
 
 // Smooths postures at the constant interval dt [s] without phase shift and computes their
 // derivatives. The function runs a second-order Butterworth filter forward and backward, and then
-// takes central differences. `cutoff` [Hz] is the overall cutoff, and the cutoff of each pass is
+// takes central differences. The overall cutoff is kMotionCutoff, and the cutoff of each pass is
 // 1/0.802 of it (Winter 2009). The filter causes no delay, but the results of the last half second
 // change if samples are added afterwards. The cutoff is at most half of the Nyquist frequency. If
 // there are fewer than three postures, the derivatives are zero.
-std::vector<BodyMotion> SmoothMotion(std::span<const BodyVector> q, double dt, double cutoff = 6);
+inline constexpr double kMotionCutoff = 6;  // [Hz]
+std::vector<BodyMotion> SmoothMotion(std::span<const BodyVector> q, double dt);
 
 }  // namespace predictor::person

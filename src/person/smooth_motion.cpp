@@ -26,15 +26,15 @@ std::vector<BodyVector> Continued(std::span<const BodyVector> q, std::size_t n) 
 
 }  // namespace
 
-std::vector<BodyMotion> SmoothMotion(std::span<const BodyVector> q, double dt, double cutoff) {
+std::vector<BodyMotion> SmoothMotion(std::span<const BodyVector> q, double dt) {
   std::vector<BodyMotion> motion(q.size());
   for (std::size_t i = 0; i < q.size(); ++i) motion[i].q = q[i];
   if (q.size() < 3) return motion;
   // The effect of the ends vanishes within about 0.5 s.
-  const std::size_t margin = std::min(
-      q.size() - 1, static_cast<std::size_t>(std::ceil(3 / (std::max(cutoff, 1e-3) * dt))));
+  const std::size_t margin =
+      std::min(q.size() - 1, static_cast<std::size_t>(std::ceil(3 / (kMotionCutoff * dt))));
   std::vector<BodyVector> all = Continued(q, margin);
-  const double pass = std::min(cutoff / 0.802, 0.25 / dt);
+  const double pass = std::min(kMotionCutoff / 0.802, 0.25 / dt);
   for (int direction = 0; direction < 2; ++direction) {
     FilterForward(pass, dt, &all);
     std::reverse(all.begin(), all.end());

@@ -141,7 +141,7 @@ TEST(SmoothMotion, HasItsGainAndNoPhase) {
   for (const double frequency : {0.5, 2.0, 6.0, 15.0}) {
     std::vector<BodyVector> q;
     for (std::size_t i = 0; i < 2000; ++i) q.push_back(BodyVector::Constant(at(frequency, i)));
-    const std::vector<BodyMotion> motion = SmoothMotion(q, kDt, 6);
+    const std::vector<BodyMotion> motion = SmoothMotion(q, kDt);
     // The filter makes two passes of 1/(1 + (f/f_pass)⁴), with the frequencies of the bilinear
     // transform.
     const double ratio = std::tan(kPi * frequency * kDt) / std::tan(kPi * 6 / 0.802 * kDt);
