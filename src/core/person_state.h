@@ -74,8 +74,10 @@ inline constexpr std::array kBodyPartNames = {"lower_back", "left_shoulder", "ri
                                               "left_elbow", "right_elbow"};
 inline constexpr std::size_t kBodyParts = kBodyPartNames.size();
 
-inline constexpr double kCompressionLimit = 3400;  // NIOSH's limit for L5/S1 [N]
-inline constexpr double kShearLimit = 700;  // Gallagher & Marras's limit for frequent shear [N]
+// Limits for L5/S1 [N], and their sources.
+inline constexpr double kCompressionLimit = 3400, kShearLimit = 700;
+inline constexpr const char* kCompressionLimitName = "NIOSH's limit for compression";
+inline constexpr const char* kShearLimitName = "Gallagher & Marras's limit for frequent shear";
 
 // Values for the nominal posture, each with an interval that covers the possible postures.
 enum class PersonGauge : std::uint8_t {

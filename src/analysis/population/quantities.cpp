@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "analysis/population/population.h"
+#include "core/person_state.h"
 #include "evaluation/statistics_samples.h"
 
 namespace predictor::population {
@@ -74,10 +75,10 @@ constexpr StudyQuantity kQuantities[] = {
      }},
     {"lower_back_compression_n", "L5/S1 compression", kWholeNewtons, Origin::kModelled,
      [](const Assessment& a, double tail) { return Tail(a, "lower_back.compression_n", tail); },
-     3400, "NIOSH's limit for compression"},
+     kCompressionLimit, kCompressionLimitName},
     {"lower_back_shear_n", "L5/S1 shear", kWholeNewtons, Origin::kModelled,
-     [](const Assessment& a, double tail) { return Tail(a, "lower_back.shear_n", tail); }, 700,
-     "Gallagher & Marras's limit for frequent shear"},
+     [](const Assessment& a, double tail) { return Tail(a, "lower_back.shear_n", tail); },
+     kShearLimit, kShearLimitName},
     {"shoulder_use", "share of own shoulder strength", kShares, Origin::kModelled,
      [](const Assessment& a, double tail) {
        return Larger(a, tail, "strength.left_shoulder", "strength.right_shoulder");
