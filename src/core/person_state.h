@@ -18,7 +18,6 @@ enum class PersonStatus : std::uint8_t {
   kBelowGround,  // the handles are below the ground: operator.stance.ground is wrong
 };
 inline constexpr std::array kPersonStatusNames = {"judged", "waiting", "no_hand", "below_ground"};
-inline constexpr std::size_t kPersonStatuses = kPersonStatusNames.size();
 
 // The origin of the head of the nominal posture.
 enum class HeadSource : std::uint8_t {
@@ -148,7 +147,6 @@ inline constexpr std::array kPersonGaugeRows = {
 inline constexpr std::size_t kPersonGauges = kPersonGaugeRows.size();
 
 // Worksheets. A class is an action level of the worksheet. Level 1 is the lowest.
-enum class PersonScore : std::uint8_t { kRula, kReba, kOwas };
 struct PersonScoreRow {
   const char* name;
   int most;     // highest score

@@ -14,8 +14,6 @@ namespace predictor::ros_tcp {
 
 class RosSession {
  public:
-  static constexpr std::size_t kMaxTopics = 64;  // limit of the topics subscribed to or announced
-
   // The session calls on_stop when a client requests a stop. `topics` is borrowed.
   RosSession(const RosTopics* topics, RosDialect dialect, std::function<void()> on_stop);
 

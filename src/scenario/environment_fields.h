@@ -6,6 +6,8 @@
 
 namespace predictor {
 
+inline constexpr std::size_t kMaxFixtures = 64;  // each is a bit of the absent fixtures
+
 template <class V>
 void Fields(V& v, TableSpec& s) {
   v("size", s.size, Number("m", "length, width, thickness", Above(0, 100)));
@@ -64,7 +66,8 @@ void Fields(V& v, EnvironmentSpec& s) {
   v("gravity", s.gravity, Number("m/s²", "gravitational acceleration, along -z of W", From(0, 30)));
   v("floor", s.floor, Flag("a floor with contact at z = 0"));
   v("table", s.table, Part("a table with contact; null: none"));
-  v("fixtures", s.fixtures, List(Part("bodies that never move and that others can touch"), 0, 64));
+  v("fixtures", s.fixtures,
+    List(Part("bodies that never move and that others can touch"), 0, kMaxFixtures));
   v("objects", s.objects,
     List(Part("movable objects: bodies that nothing holds at the start and that others push"), 0,
          kMaxMovables));

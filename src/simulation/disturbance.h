@@ -9,8 +9,6 @@
 
 namespace predictor {
 
-inline constexpr int kMaxFixtures = 64;  // of a scenario
-
 // The limits of the attachment's grip on the object.
 struct GripLimits {
   double force = HUGE_VAL;   // above it, the object slides [N]; 0 with a torque of 0: open
