@@ -1,8 +1,10 @@
 // Sends the person's hands to the server: the desired pose of each handle, and whether the hand
 // grips. The page never sends a force, because the program computes the hand's spring and its
 // limits.
+import {Quaternion, Vector3} from 'three';
 import {Connection} from './connection';
 import {kSides, Pose, Side} from './protocol';
+import {quaternion, vector} from './scene/frames';
 
 const kPeriodMs = 1000 / 55;  // at most 60 messages per second and hand, even with an inexact timer
 
@@ -32,6 +34,21 @@ export class Hands {
 
   get holding(): boolean {
     return kSides.some((side) => this.targets[side] !== null);
+  }
+
+  // Returns the targets of the held handles among `sides` after a rotation about the vertical through
+  // their midpoint. `angle` is in radians.
+  turned(sides: readonly Side[], angle: number): Map<Side, Pose> {
+    const held = sides.flatMap((side) => {
+      const target = this.targets[side];
+      return target ? [{side, p: vector(target.p), q: quaternion(target.q)}] : [];
+    });
+    const turn = new Quaternion().setFromAxisAngle(new Vector3(0, 0, 1), angle);
+    const middle = held.reduce((sum, {p}) => sum.add(p), new Vector3()).divideScalar(Math.max(held.length, 1));
+    return new Map(held.map(({side, p, q}) => {
+      const {x, y, z, w} = turn.clone().multiply(q);
+      return [side, {p: p.sub(middle).applyQuaternion(turn).add(middle).toArray(), q: [w, x, y, z]}];
+    }));
   }
 
   // Repeats the pose of a held hand, because the server releases a hand after 250 ms without a message.

@@ -1,10 +1,10 @@
 // The keyboard acts as a hand while the scene has the focus. L and R take or release one handle,
 // and B takes or releases both handles. Arrow keys move the held handles relative to the camera.
 // Page Up and Page Down lift and lower the held handles, and comma and dot rotate them.
-import {Quaternion, Vector3} from 'three';
+import {Vector3} from 'three';
 import {Hands} from './hands';
 import {kSides, Pose, Side, State} from './protocol';
-import {quaternion, vector} from './scene/frames';
+import {vector} from './scene/frames';
 import {Stage} from './scene/stage';
 
 const kStep = 0.005;          // per key press [m]
@@ -95,15 +95,7 @@ export class KeyboardHand {
 
   // Rotates both handles about their midpoint.
   private turn(angle: number) {
-    const targets = this.targets();
-    const turn = new Quaternion().setFromAxisAngle(new Vector3(0, 0, 1), angle);
-    const middle = targets.reduce((sum, [, {p}]) => sum.add(vector(p)), new Vector3())
-                       .divideScalar(Math.max(targets.length, 1));
-    for (const [side, target] of targets) {
-      const p = vector(target.p).sub(middle).applyQuaternion(turn).add(middle);
-      const q = turn.clone().multiply(quaternion(target.q));
-      this.hands.hold(side, {p: p.toArray(), q: [q.w, q.x, q.y, q.z]});
-    }
+    this.hands.turned(this.held, angle).forEach((pose, side) => this.hands.hold(side, pose));
   }
 
   private targets(): [Side, Pose][] {

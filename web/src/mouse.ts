@@ -1,8 +1,8 @@
 // The mouse, a pen or a finger acts as a hand that takes a handle and drags it.
-import {Plane, Quaternion, Raycaster, Vector2, Vector3} from 'three';
+import {Plane, Raycaster, Vector2, Vector3} from 'three';
 import {Hands} from './hands';
 import {kSides, Pose, Side, State} from './protocol';
-import {quaternion, vector} from './scene/frames';
+import {vector} from './scene/frames';
 import {Stage} from './scene/stage';
 
 const kTurnPerNotch = Math.PI / 90;  // per wheel notch, about the vertical [rad]
@@ -101,16 +101,8 @@ export class MouseHand {
     event.preventDefault();
     event.stopImmediatePropagation();
     const {sides, base} = this.grip;
-    const turn = new Quaternion().setFromAxisAngle(
-        new Vector3(0, 0, 1), -Math.sign(event.deltaY) * kTurnPerNotch);
-    const middle = sides.reduce((sum, s) => sum.add(vector(this.hands.targets[s]!.p)),
-                                new Vector3()).divideScalar(sides.length);
-    for (const side of sides) {
-      const target = this.hands.targets[side]!;
-      const p = vector(target.p).sub(middle).applyQuaternion(turn).add(middle);
-      const q = turn.clone().multiply(quaternion(target.q));
-      const turned: Pose = {p: p.toArray(), q: [q.w, q.x, q.y, q.z]};
-      const moved = p.sub(vector(target.p));
+    for (const [side, turned] of this.hands.turned(sides, -Math.sign(event.deltaY) * kTurnPerNotch)) {
+      const moved = vector(turned.p).sub(vector(this.hands.targets[side]!.p));
       base[side] = {p: vector(base[side]!.p).add(moved).toArray(), q: turned.q};
       this.hands.hold(side, turned);
     }
