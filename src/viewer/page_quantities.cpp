@@ -79,7 +79,7 @@ std::string Fields(const char* name, const char* kinds, const std::string& prefi
 std::string PageQuantities() {
   const auto words = [](const char* const* names) { return [names](int k) { return names[k]; }; };
   return "// Generated from src/core/tick_fields.h: build/release/bin/page_quantities writes this "
-         "file.\n\nimport type {Pose} from './protocol';\n\n" +
+         "file.\n\nimport type {Pose} from './pose';\n\n" +
          Words("kRunStates", "RunState", kRunStates,
                [](int k) { return Name(static_cast<RunState>(k)); }) +
          Words("kStopCauses", "StopCause", kStopCauses,

@@ -17,7 +17,7 @@ import {save} from './panel/save';
 import {PersonPlayer} from './person';
 import {Shown, StatePlayer} from './player';
 import {Headset, SceneSpec, scenarioOf, State, Welcome} from './protocol';
-import {View} from './scene/camera';
+import {kViews, View} from './scene/camera';
 import {Stage} from './scene/stage';
 import {PathScore} from './score';
 import {ThemeSwitch} from './theme';
@@ -386,10 +386,9 @@ export class App {
       }
       return;
     }
-    const views: View[] = ['free', 'front', 'side', 'top', 'operator', 'headset'];
     const typing = event.target instanceof HTMLInputElement && event.target.type !== 'range';
     if (event.key.toLowerCase() === 'm' && !typing && !event.ctrlKey && !event.repeat) this.panel.mark();
-    const view = views[Number(event.key) - 1];
+    const view = kViews[Number(event.key) - 1];
     if (view && !typing && !event.ctrlKey && !event.altKey && !event.metaKey) this.setView(view);
   }
 

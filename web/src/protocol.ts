@@ -2,23 +2,15 @@
 // frame W has Z up, and quaternions have the scalar first.
 
 import {PersonState} from './person_state';
+import {Pose, Quat, Side, Vec3} from './pose';
 import {
   HandQuantities, kHandFields, kQuantities, kRunFields, kRunStates, kStopCauses, ParameterName,
   Quantity, RunQuantities, StopCause,
 } from './quantities';
 
 export * from './person_state';
+export * from './pose';
 export * from './quantities';
-
-export type Vec3 = [number, number, number];
-export type Quat = [number, number, number, number];
-export type Side = 'left' | 'right';
-export const kSides: readonly Side[] = ['left', 'right'];
-
-export interface Pose {
-  p: Vec3;
-  q: Quat;
-}
 
 export interface RobotSpec {
   urdf: string;

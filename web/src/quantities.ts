@@ -1,6 +1,6 @@
 // Generated from src/core/tick_fields.h: build/release/bin/page_quantities writes this file.
 
-import type {Pose} from './protocol';
+import type {Pose} from './pose';
 
 export const kRunStates = [
   'INIT', 'SELFTEST', 'IDLE', 'ALIGN', 'ARMED', 'RUN',

@@ -1,6 +1,6 @@
 // Provides states, causes of stops and advice as texts from the catalogue.
 import {message, MessageId} from './messages';
-import {kSides, Quantity, Reason, RunState, Side, State} from './protocol';
+import {kSides, Quantity, Reason, RunState, State} from './protocol';
 
 export interface StateWords {
   title: string;
@@ -162,10 +162,6 @@ function measured({cause, value, limit, quantity}: Reason): string {
 
 function capital(text: string): string {
   return text.charAt(0).toUpperCase() + text.slice(1);
-}
-
-export function sideWords(side: Side): string {
-  return side === 'left' ? 'Left hand' : 'Right hand';
 }
 
 // Describes the fault by its kind, its place and its amount.

@@ -210,7 +210,7 @@ export class Overlay {
   }
 
   private buildViews(): HTMLButtonElement[] {
-    return [...kViews, 'headset' as const].map((view, i) => {
+    return kViews.map((view, i) => {
       const button = h('button', {
         class: 'small', id: `view-${view}`, 'aria-pressed': String(view === 'free'),
         title: `View: ${kViewWords[view]} (key ${i + 1})`, hidden: view === 'headset',

@@ -5,6 +5,7 @@ import {loadColor} from '../load';
 import {kArmParts, kHeadWords, kWhyNot} from '../person';
 import {kPersonGauges, kPersonScores, kPersonWarnings, PersonState, SceneSpec} from '../protocol';
 import {hex} from '../theme';
+import {fixed} from '../words';
 
 type GaugeName = keyof typeof kPersonGauges;
 type ScoreName = keyof typeof kPersonScores;
@@ -55,8 +56,7 @@ const kOperator: Record<SceneSpec['operator'], string> = {
 
 export function gaugeText(look: GaugeLook, value: number | null): string {
   if (value === null) return '–';
-  const text = (look.factor * value).toFixed(look.decimals);
-  return `${/^-[0.]*$/.test(text) ? text.slice(1) : text} ${look.unit}`;
+  return `${fixed(look.factor * value, look.decimals)} ${look.unit}`;
 }
 
 // Shows a value on a bar, with its 90 % interval as a band and its limit as a mark.

@@ -7,7 +7,8 @@ import {matrix} from './frames';
 import {frame, Place, pointsToShow} from './framing';
 
 export type View = 'free' | 'front' | 'side' | 'top' | 'operator' | 'headset';
-export const kViews: readonly View[] = ['free', 'front', 'side', 'top', 'operator'];
+// In the order of the buttons and of the keys 1, 2, …
+export const kViews: readonly View[] = ['free', 'front', 'side', 'top', 'operator', 'headset'];
 
 const kMoveMs = 450;
 const kFieldOfView = 42;          // vertical [°]

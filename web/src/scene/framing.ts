@@ -1,6 +1,7 @@
 // Finds the view of a camera that contains the cobot, the person and the fixtures.
-import {Quaternion, Vector3} from 'three';
+import {Vector3} from 'three';
 import {FixtureSpec, SceneSpec, Vec3} from '../protocol';
+import {quaternion, vector} from './frames';
 
 const kCobotHeight = 1;   // of a cobot's elbow above its base, roughly [m]
 const kCobotBehind = 0.2; // of a cobot's arm behind its base, roughly [m]
@@ -37,9 +38,8 @@ function corners(fixture: FixtureSpec): Vec3[] {
   const half = halfExtents(fixture);
   if (!half) return [];
   const {p, q} = fixture.pose;
-  const turn = new Quaternion(q[1], q[2], q[3], q[0]);
   return kCorners.map(([x, y, z]) =>
-    new Vector3(x * half[0], y * half[1], z * half[2]).applyQuaternion(turn).add(new Vector3(...p)).toArray());
+    new Vector3(x * half[0], y * half[1], z * half[2]).applyQuaternion(quaternion(q)).add(vector(p)).toArray());
 }
 
 // Returns points in W that enclose what the person and the cobot do [m].
