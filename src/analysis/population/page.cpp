@@ -253,12 +253,8 @@ std::string SummaryTable(const PopulationStudy& study) {
     std::vector<std::string> row = {EscapeMarkup(WithUnit(kind.label, kind.unit))};
     for (std::size_t i = 0; i < study.designs.size(); ++i) {
       const DesignSummary& s = study.summaries[i][q];
-      const auto value = [&](const CensoredValue& x) {
-        const char* bound = kind.bad == assessment::Bad::kHigh ? "≥ " : "≤ ";
-        return (x.at_least ? bound : "") +
-               Formatted("%.*f", kind.unit.decimals, kind.unit.factor * x.value);
-      };
-      std::string cell = value(s.median) + " (" + value(s.p5) + " to " + value(s.p95) + ")";
+      std::string cell =
+          Shown(kind, s.median) + " (" + Shown(kind, s.p5) + " to " + Shown(kind, s.p95) + ")";
       if (kind.has_limit()) cell += Formatted("; %.0f %% beyond", 100 * s.beyond.value());
       row.push_back(s.people > 0 ? cell : "–");
     }

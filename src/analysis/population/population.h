@@ -126,6 +126,10 @@ PopulationStudy MakePopulationStudy(const PopulationOptions& options);
 // Computes summaries and differences from the runs.
 void Compare(PopulationStudy* study);
 
+// Returns the value in the unit for people. The text marks a value of which only a bound is known,
+// and is "–" if the value is unknown.
+std::string Shown(const StudyQuantity& kind, const CensoredValue& x);
+
 std::string PersonsCsv(const PopulationStudy& study);
 std::string DesignsCsv(const PopulationStudy& study);
 std::string DifferencesCsv(const PopulationStudy& study);

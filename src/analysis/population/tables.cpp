@@ -22,13 +22,6 @@ std::string Shown(const StudyQuantity& kind, double x) {
   return std::isfinite(x) ? Formatted("%.*f", kind.unit.decimals, kind.unit.factor * x) : "–";
 }
 
-// Marks a value of which only a bound is known.
-std::string Shown(const StudyQuantity& kind, const CensoredValue& x) {
-  const std::string value = Shown(kind, x.value);
-  if (!x.at_least || !std::isfinite(x.value)) return value;
-  return (kind.bad == assessment::Bad::kHigh ? "≥ " : "≤ ") + value;
-}
-
 // Returns the names of the quantiles that are only bounds, separated by spaces.
 std::string BoundsIn(const DesignSummary& s) {
   std::vector<std::string> names;
@@ -125,6 +118,12 @@ std::string DifferenceText(const PopulationStudy& study, std::size_t against) {
 }
 
 }  // namespace
+
+std::string Shown(const StudyQuantity& kind, const CensoredValue& x) {
+  const std::string value = Shown(kind, x.value);
+  if (!x.at_least || !std::isfinite(x.value)) return value;
+  return (kind.bad == assessment::Bad::kHigh ? "≥ " : "≤ ") + value;
+}
 
 std::string PersonsCsv(const PopulationStudy& study) {
   std::string csv =
