@@ -45,12 +45,6 @@ constexpr std::array<double (*)(const Frame&), kPersonWarnings> kWarningValues =
     [](const Frame& f) { return f.reached ? 0.0 : 1.0; },
 };
 
-// Returns the hand to which the gauge belongs: 0, 1, or −1 if the gauge belongs to neither hand.
-constexpr int HandOf(std::size_t gauge) {
-  if (gauge < static_cast<std::size_t>(PersonGauge::kLeftShoulderUse)) return -1;
-  return static_cast<int>(gauge - static_cast<std::size_t>(PersonGauge::kLeftShoulderUse)) % 2;
-}
-
 // Returns whether the given hand holds a handle. For −1, which stands for neither hand, returns
 // true.
 bool IsPresent(int hand, const PersonSample& sample) {
@@ -70,7 +64,7 @@ ScoreState ScoreOf(std::size_t kind, const Frame& frame) {
 void WriteFrame(const JudgedSample& judged, PersonState* state) {
   const Moment moment{judged.frame, judged.sample};
   for (std::size_t i = 0; i < kPersonGauges; ++i)
-    state->gauges[i].value = IsPresent(HandOf(i), judged.sample)
+    state->gauges[i].value = IsPresent(kPersonGaugeRows[i].hand, judged.sample)
                                  ? static_cast<float>(kGaugeValues[i](moment))
                                  : kUnknown;
   const PartLoads loads = LoadsOf(judged.frame);
@@ -89,7 +83,8 @@ void WriteIntervals(std::span<const Frame> frames, const PersonSample& sample, P
   for (std::size_t i = 0; i < kPersonGauges; ++i) {
     GaugeState& gauge = state->gauges[i];
     gauge.low = gauge.high = kUnknown;
-    if (kPersonGaugeRows[i].source != GaugeSource::kModelled || !IsPresent(HandOf(i), sample))
+    if (kPersonGaugeRows[i].source != GaugeSource::kModelled ||
+        !IsPresent(kPersonGaugeRows[i].hand, sample))
       continue;
     std::vector<double> values;
     for (const Frame& frame : frames) values.push_back(kGaugeValues[i]({frame, sample}));

@@ -107,6 +107,7 @@ struct PersonGaugeRow {
   double limit;  // 0: none, except for balance
   bool low_is_bad;
   GaugeSource source;
+  int hand = -1;  // the hand that the gauge belongs to; −1: neither
 };
 inline constexpr std::array kPersonGaugeRows = {
     PersonGaugeRow{"lower_back_compression", "N", "compression of the disc L5/S1",
@@ -123,26 +124,26 @@ inline constexpr std::array kPersonGaugeRows = {
                    GaugeSource::kModelled},
     PersonGaugeRow{"left_shoulder_use", "",
                    "torque divided by the mean strength of this sex, flexion", 1, false,
-                   GaugeSource::kModelled},
+                   GaugeSource::kModelled, 0},
     PersonGaugeRow{"right_shoulder_use", "",
                    "torque divided by the mean strength of this sex, flexion", 1, false,
-                   GaugeSource::kModelled},
+                   GaugeSource::kModelled, 1},
     PersonGaugeRow{"left_elbow_use", "", "torque divided by the mean strength of this sex", 1,
-                   false, GaugeSource::kModelled},
+                   false, GaugeSource::kModelled, 0},
     PersonGaugeRow{"right_elbow_use", "", "torque divided by the mean strength of this sex", 1,
-                   false, GaugeSource::kModelled},
+                   false, GaugeSource::kModelled, 1},
     PersonGaugeRow{"left_hand_force", "N", "magnitude of the force on the handle", 0, false,
-                   GaugeSource::kMeasured},
+                   GaugeSource::kMeasured, 0},
     PersonGaugeRow{"right_hand_force", "N", "magnitude of the force on the handle", 0, false,
-                   GaugeSource::kMeasured},
+                   GaugeSource::kMeasured, 1},
     PersonGaugeRow{"left_arm_activation", "", "largest activation of a muscle", 0, false,
-                   GaugeSource::kMuscles},
+                   GaugeSource::kMuscles, 0},
     PersonGaugeRow{"right_arm_activation", "", "largest activation of a muscle", 0, false,
-                   GaugeSource::kMuscles},
+                   GaugeSource::kMuscles, 1},
     PersonGaugeRow{"left_hand_stiffness", "N/m", "smallest principal stiffness; a lower bound", 0,
-                   false, GaugeSource::kMuscles},
+                   false, GaugeSource::kMuscles, 0},
     PersonGaugeRow{"right_hand_stiffness", "N/m", "smallest principal stiffness; a lower bound", 0,
-                   false, GaugeSource::kMuscles},
+                   false, GaugeSource::kMuscles, 1},
 };
 inline constexpr std::size_t kPersonGauges = kPersonGaugeRows.size();
 
