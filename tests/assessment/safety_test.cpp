@@ -12,6 +12,7 @@
 #include "assessment/safety/output.h"
 #include "assessment/samples.h"
 #include "core/error.h"
+#include "scenario/own_parameters.h"
 
 namespace predictor::assessment {
 namespace {
@@ -347,19 +348,41 @@ TEST(Safety, StatesWhatTheRigCannotRender) {
   EXPECT_NE(SafetyText(safety).find("no event of the scenario had begun"), std::string::npos);
 }
 
-// The event that had begun last at the largest value explains why the limit was reached.
+// The event that had begun last at the largest value explains why the limit was reached. A record
+// numbers an event by its hazard in the catalogue. Here each entry of the scenario has another
+// number than its hazard.
 TEST(Safety, ALimitOfTheRigNamesTheEvent) {
+  const ParameterKind loss = {"power_loss", "the cobot loses its power", nullptr};
+  const ParameterKind slips = {"object_slips", "the object slips", nullptr};
+  const ParameterKind jolt = {"jolt", "the cobot jolts", nullptr};
+  const ParameterKind* kinds[] = {&loss, &slips, &jolt};
+  const ParameterKinds declared = Hazards();
+  DeclareHazards(kinds);
   Scenario scenario = PersonScenario();
   for (const char* event : {"jolt", "power_loss"}) scenario.events.push_back({.event = event});
   const auto run = CollectSafety(scenario, 100, [](std::uint64_t t) {
     TickRecord record = SceneRecord(t, {0.3, 0, 0.15}, 0.1);
-    record.latest_event = t >= 90 ? 2 : t >= 60 ? 1 : 0;
+    record.latest_event = t >= 90 ? 1 : t >= 60 ? 3 : 0;  // the jolt, and then the loss of power
     record.hands[1].wrench[2] = t == 70 ? 31 : t == 95 ? 30.5 : 12;
+    record.hands[1].wrench[3] = t == 95 ? 4 : 0;
     return record;
   });
   const SafetyAssessment safety = JudgeSafety(scenario, MadeUpSetup(scenario), run, {});
   EXPECT_EQ(safety.rig[0].event, "jolt");
+  EXPECT_EQ(safety.rig[1].event, "power_loss");
   EXPECT_NE(SafetyText(safety).find("after the event jolt had begun"), std::string::npos);
+  // A single event whose hazard is not the first of the catalogue.
+  scenario.events = {{.event = "object_slips"}};
+  const auto slipping = CollectSafety(scenario, 100, [](std::uint64_t t) {
+    TickRecord record = SceneRecord(t, {0.3, 0, 0.15}, 0.1);
+    record.latest_event = t >= 60 ? 2 : 0;
+    record.hands[1].wrench[2] = t == 70 ? 31 : 12;
+    return record;
+  });
+  const SafetyAssessment slip = JudgeSafety(scenario, MadeUpSetup(scenario), slipping, {});
+  EXPECT_EQ(slip.rig[0].event, "object_slips");
+  EXPECT_NE(SafetyText(slip).find("after the event object_slips had begun"), std::string::npos);
+  DeclareHazards(declared);
 }
 
 TEST(Safety, OfARunWithoutSimulatedTimeIsRefused) {

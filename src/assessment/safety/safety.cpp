@@ -5,28 +5,33 @@
 #include "assessment/output.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "scenario/own_parameters.h"
 
 namespace predictor::assessment {
 namespace {
 
-// Returns the hazard that had begun last when the value was largest, or "".
-std::string EventOf(const Scenario& scenario, const SafetyCollector::LargestValue& largest) {
+// Returns the hazard that had begun last when the value was largest, or "". The number of an event
+// is that of its hazard in the catalogue, not that of its entry in the scenario.
+std::string EventOf(const SafetyCollector::LargestValue& largest) {
+  const ParameterKinds hazards = Hazards();
   const std::size_t number = largest.event;
-  return number > 0 && number <= scenario.events.size() ? scenario.events[number - 1].event : "";
+  if (number == 0) return "";
+  return number <= hazards.size() ? hazards[number - 1]->name
+                                  : "number " + std::to_string(number) + " of the catalogue";
 }
 
 std::vector<RigLimit> RigLimits(const Scenario& scenario, const SafetyCollector::Largest& largest) {
   constexpr Unit kRotationSpeed = {"rad/s", "rad/s", 1, 2};
   const SafetySpec& safety = scenario.safety;
   std::vector<RigLimit> limits = {{"force of a hand", units::kNewton, safety.force,
-                                   largest.force.value, EventOf(scenario, largest.force)},
+                                   largest.force.value, EventOf(largest.force)},
                                   {"torque of a hand", units::kNewtonMetre, safety.torque,
-                                   largest.torque.value, EventOf(scenario, largest.torque)}};
+                                   largest.torque.value, EventOf(largest.torque)}};
   if (scenario.mode != Mode::kEmulate) return limits;
   limits.push_back({"speed of a virtual handle", units::kMetrePerSecond, safety.handle_speed,
-                    largest.speed.value, EventOf(scenario, largest.speed)});
+                    largest.speed.value, EventOf(largest.speed)});
   limits.push_back({"rotation of a virtual handle", kRotationSpeed, safety.handle_rotation_speed,
-                    largest.rotation_speed.value, EventOf(scenario, largest.rotation_speed)});
+                    largest.rotation_speed.value, EventOf(largest.rotation_speed)});
   return limits;
 }
 
