@@ -15,19 +15,25 @@
 namespace predictor {
 namespace {
 
-// Returns no masses if the recorded models cannot be read, and prints the reason.
-std::optional<assessment::SceneMasses> MassesOf(const RecordingHeader& header) {
+struct SceneModels {
+  assessment::SceneMasses masses;
+  std::vector<OutlinePoint> outline;  // of the object
+};
+
+// Returns no models if the recorded models cannot be read, and prints the reason.
+std::optional<SceneModels> ModelsOf(const RecordingHeader& header) {
   try {
     const RestoredScenario restored(header);
     const Scenario& scenario = restored.Get();
     const CobotSpec& cobot = scenario.cobot;
     const UrdfModel urdf = ReadUrdf(ResolveModelPath(cobot.model, scenario.folder()),
                                     cobot.remove_links, scenario.folder());
-    return assessment::SceneMasses{.cobot = urdf.MovingMass(),
-                                   .object = LoadObject(scenario.object, scenario.folder()).mass};
+    const ObjectModel object = LoadObject(scenario.object, scenario.folder());
+    return SceneModels{{.cobot = urdf.MovingMass(), .object = object.mass}, OutlineOf(object)};
   } catch (const InputError& error) {
-    TheScreen().Print(std::string("The masses of the virtual scene are not known: ") +
-                      error.what());
+    TheScreen().Print(
+        std::string("The masses of the virtual scene and the shape of its object are not known: ") +
+        error.what());
     return {};
   }
 }
@@ -64,14 +70,15 @@ EvaluatedRun OpenTicks(const std::string& file, const PersonOptions& options) {
   RefuseUnknown(run.scenario, file);
   run.participant = ParticipantIn(header.labels);
   assessment::SampleCollector samples(run.scenario);
-  run.safety.emplace(run.scenario);
+  const std::optional<SceneModels> models = ModelsOf(header);
+  if (models) run.masses = models->masses;
+  run.safety.emplace(run.scenario, models ? models->outline : std::vector<OutlinePoint>());
   ReadTicks(&reader, "Reading", options.quiet, [&](const TickRecord& record) {
     samples.Add(record);
     run.safety->Add(record);
   });
   ShowProblem(reader.problem());
   run.run = assessment::RunOf(samples);
-  run.masses = MassesOf(header);
   if (run.masses) run.object_mass = run.masses->object;
   run.start_unix = 1e-9 * static_cast<double>(header.start_unix_ns);
   if (auto head = HeadOf(reader)) run.tracks.push_back(std::move(*head));

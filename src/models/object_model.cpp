@@ -113,7 +113,35 @@ UrdfModel ReadObjectUrdf(const ObjectSpec& spec, const std::filesystem::path& fo
   }
 }
 
+void AppendOutline(const ModelShape& shape, std::vector<OutlinePoint>* outline) {
+  const Vector3& size = shape.size;
+  switch (shape.kind) {
+    case ShapeKind::kBox:
+      for (const double x : {-0.5, 0.5})
+        for (const double y : {-0.5, 0.5})
+          for (const double z : {-0.5, 0.5})
+            outline->push_back({shape.X_LG * Vector3(x * size.x(), y * size.y(), z * size.z())});
+      return;
+    case ShapeKind::kCylinder:
+      for (const double z : {-0.5, 0.5})
+        outline->push_back({shape.X_LG * Vector3(0, 0, z * size.y()), size.x()});
+      return;
+    case ShapeKind::kSphere:
+      outline->push_back({shape.X_LG.p, size.x()});
+      return;
+    case ShapeKind::kMesh:
+      return;
+  }
+}
+
 }  // namespace
+
+std::vector<OutlinePoint> OutlineOf(const ObjectModel& object) {
+  std::vector<OutlinePoint> outline;
+  for (const ModelShape& shape : object.collisions.empty() ? object.visuals : object.collisions)
+    AppendOutline(shape, &outline);
+  return outline;
+}
 
 ObjectModel ReadObject(const std::filesystem::path& file) { return MakeObject(ReadUrdf(file)); }
 

@@ -20,6 +20,17 @@ struct ObjectModel {
   std::vector<ModelShape> visuals, collisions;  // X_LG in O
 };
 
+// A point of an object's outline, or, with a radius, each point of the sphere around it.
+struct OutlinePoint {
+  Vector3 p = Vector3::Zero();  // in O [m]
+  double radius = 0;            // [m]
+};
+
+// Returns points whose hull contains the object's collision shapes, or its visuals if it has no
+// collision shape: the corners of each box, the ends of each cylinder's axis with the cylinder's
+// radius, and the centre of each sphere with its radius. Meshes are left out.
+std::vector<OutlinePoint> OutlineOf(const ObjectModel& object);
+
 // The largest total number of triangles in all collision meshes of an object. At start-up, the
 // physics engine computes the convex hull of each mesh. In the worst case (every vertex on the
 // hull), this computation takes 0.7 s for the permitted number of triangles, and 4 s for 100 000

@@ -274,6 +274,42 @@ TEST(LettingGo, SeparationIsTheWorstOfTheReleases) {
   EXPECT_EQ(run.scene().fastest().time, 0.1);
 }
 
+// A box rotates about its origin, which is at rest. Its fastest points are its corners. The box is
+// turned by 90° about z, so its long side points along y.
+TEST(LettingGo, TheFastestPointOfARotatingObjectCounts) {
+  PrimitiveSpec box{.shape = Shape::kBox, .size = {0.8, 0.2, 0.4}, .mass = 9};
+  const auto rotating = [&](const Vector3& axis) {
+    SafetyCollector run(PersonScenario(), OutlineOf(MakeObject(box)));
+    TickRecord record = SceneRecord(1, {0.3, 0, 0.15}, 0);
+    record.object.pose = ToRecord(PoseFromXyzRpy({0.3, 0, 0.15}, {0, 0, std::numbers::pi / 2}));
+    for (std::size_t i = 0; i < 3; ++i)
+      record.object.twist[3 + i] = 0.93 * axis[static_cast<int>(i)];
+    run.Add(record);
+    return run.scene().fastest().speed();
+  };
+  EXPECT_NEAR(rotating({0, 0, 1}), 0.93 * std::hypot(0.4, 0.1), 1e-12);
+  EXPECT_NEAR(rotating({0, 1, 0}), 0.93 * std::hypot(0.1, 0.2), 1e-12);
+  EXPECT_NEAR(rotating({1, 0, 0}), 0.93 * std::hypot(0.4, 0.2), 1e-12);
+  // A sphere and a cylinder of the same radius, whose axis is z.
+  box = {.shape = Shape::kSphere, .size = {0.3, 0, 0}, .mass = 9};
+  EXPECT_NEAR(rotating({0, 0, 1}), 0.93 * 0.3, 1e-12);
+  box = {.shape = Shape::kCylinder, .size = {0.3, 0.5, 0}, .mass = 9};
+  EXPECT_NEAR(rotating({0, 0, 1}), 0.93 * 0.3, 1e-12);
+}
+
+// Without the object's shape, the handles are the known points that are not at its origin.
+TEST(LettingGo, AHandleCanBeTheFastestPoint) {
+  const Scenario scenario = PersonScenario();
+  const auto run = CollectSafety(scenario, 10, [](std::uint64_t t) {
+    TickRecord record = SceneRecord(t, {0.3, 0, 0.15}, 0.13);
+    record.hands[1].virtual_.twist[2] = t == 5 ? 0.258 : 0;
+    return record;
+  });
+  EXPECT_NEAR(run.scene().fastest().speed(), 0.258, 1e-12);
+  EXPECT_NEAR(run.scene().fastest().time, 0.005, 1e-12);
+  EXPECT_NEAR(SeparationOf(run.scene(), MadeUpSetup(scenario)).speed, 0.258, 1e-12);
+}
+
 // In the reference's example, a cobot of 17.8 kg that carries 9 kg may hit a hand at 1.34 m/s.
 TEST(LettingGo, ContactLimitsTheSpeedByForceAndMasses) {
   const ContactLimit hand = {.region = "hand/finger",

@@ -8,15 +8,17 @@
 namespace predictor::assessment {
 namespace {
 
-SceneMotion::Sample SampleOf(const TickRecord& record) {
-  const auto speed = [](const MotionRecord& m) {
-    return Vector3(m.twist[0], m.twist[1], m.twist[2]).norm();
-  };
-  return {.time = record.run_time,
-          .object = FromRecord(record.object.pose).p,
-          .end_effector = FromRecord(record.end_effector.pose).p,
-          .object_speed = speed(record.object),
-          .end_effector_speed = speed(record.end_effector)};
+Vector3 LinearOf(const MotionRecord& m) { return {m.twist[0], m.twist[1], m.twist[2]}; }
+
+// Returns the speed of the fastest point of the outline [m/s]: |v + ω × r| of a point, and at most
+// |ω| times the radius more on the sphere around it.
+double FastestOf(const std::vector<OutlinePoint>& outline, const MotionRecord& object) {
+  const Quaternion q = FromRecord(object.pose).q;
+  const Vector3 v = LinearOf(object), w(object.twist[3], object.twist[4], object.twist[5]);
+  double fastest = v.norm();
+  for (const OutlinePoint& point : outline)
+    fastest = std::max(fastest, (v + w.cross(q * point.p)).norm() + w.norm() * point.radius);
+  return fastest;
 }
 
 double HorizontalDistance(const PersonSetup& setup, const Vector3& p_W) {
@@ -27,6 +29,18 @@ double HorizontalDistance(const PersonSetup& setup, const Vector3& p_W) {
 double ShareOf(double value, double limit) { return limit > 0 ? value / limit : INFINITY; }
 
 }  // namespace
+
+SceneMotion::Sample SceneMotion::SampleOf(const TickRecord& record) const {
+  Sample sample = {.time = record.run_time,
+                   .object = FromRecord(record.object.pose).p,
+                   .end_effector = FromRecord(record.end_effector.pose).p,
+                   .object_speed = FastestOf(outline_, record.object),
+                   .end_effector_speed = LinearOf(record.end_effector).norm()};
+  for (const HandRecord& hand : record.hands)
+    if (hand.present)
+      sample.object_speed = std::max(sample.object_speed, LinearOf(hand.virtual_).norm());
+  return sample;
+}
 
 void SceneMotion::Add(const TickRecord& record) {
   if (!record.ran) return;

@@ -11,11 +11,13 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "assessment/person_setup.h"
 #include "core/record.h"
 #include "ergonomics/contact_limits.h"
+#include "models/object_model.h"
 #include "scenario/scenario.h"
 
 namespace predictor::assessment {
@@ -30,13 +32,17 @@ struct SceneMasses {
 class SceneMotion {
  public:
   struct Sample {
-    double time = 0;                                  // run time [s]
-    Vector3 object = Vector3::Zero();                 // origin of the object, in W [m]
-    Vector3 end_effector = Vector3::Zero();           // in W [m]
-    double object_speed = 0, end_effector_speed = 0;  // speeds of the origins [m/s]
+    double time = 0;                         // run time [s]
+    Vector3 object = Vector3::Zero();        // origin of the object, in W [m]
+    Vector3 end_effector = Vector3::Zero();  // in W [m]
+    double object_speed = 0;                 // of its fastest point [m/s]
+    double end_effector_speed = 0;           // of the origin [m/s]
     double speed() const { return std::max(object_speed, end_effector_speed); }
   };
 
+  // The fastest point of the object is the fastest of its origin, the given points of its outline
+  // and the virtual handles.
+  explicit SceneMotion(std::vector<OutlinePoint> outline = {}) : outline_(std::move(outline)) {}
   // Adds the next record, in order.
   void Add(const TickRecord& record);
 
@@ -51,6 +57,9 @@ class SceneMotion {
   double min_lift(int hand) const { return min_lift_[static_cast<std::size_t>(hand)]; }
 
  private:
+  Sample SampleOf(const TickRecord& record) const;
+
+  std::vector<OutlinePoint> outline_;  // in O
   bool any_ = false, released_ = false;
   Sample fastest_, highest_;
   std::vector<Sample> releases_;
@@ -78,7 +87,8 @@ struct Drop {
 // scene does not have.
 struct Separation {
   double time = 0;      // run time [s]
-  double speed = 0;     // v_r: speed of the faster of object and end-effector [m/s]
+  double speed = 0;     // v_r: speed of the object's fastest point or of the end-effector's origin,
+                        // whichever is faster [m/s]
   double needed = 0;    // S [m]
   double distance = 0;  // horizontal distance from the point between the feet to the nearer of
                         // object and end-effector [m]
@@ -99,7 +109,7 @@ struct RegionCheck {
 struct UnintendedContact {
   std::string edition;               // edition of the limits
   double robot_mass = 0;             // effective [kg]
-  double speed = 0;                  // largest speed in the run [m/s]
+  double speed = 0;                  // largest SceneMotion::Sample::speed of the run [m/s]
   double time = 0;                   // run time of that speed [s]
   std::vector<RegionCheck> regions;  // transient contact, each region once
   // The largest force with which the cobot can clamp a part of the body, or no value if the

@@ -124,7 +124,8 @@ std::string MeaningOf(const std::string& key) {
        "distance travelled by the faster handle in a stop, or distance of the person from the "
        "moving scene [m]"},
       {"joints", "each joint of the arms that held a handle"},
-      {"speed_m_per_s", "speed [m/s]"},
+      {"speed_m_per_s",
+       "speed [m/s]; of the scene: of the object's fastest point or of the end-effector's origin"},
       {"needed_m", "distance that a person needs [m]"},
       {"height_m", "height of the object's origin above the ground [m]"},
       {"energy_j", "energy at the ground [J]"},

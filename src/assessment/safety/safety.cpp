@@ -1,6 +1,7 @@
 #include "assessment/safety/safety.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "assessment/output.h"
 #include "core/error.h"
@@ -74,8 +75,8 @@ void AddGaps(const Scenario& scenario, const SafetyOptions& options, SafetyAsses
 
 }  // namespace
 
-SafetyCollector::SafetyCollector(const Scenario& scenario)
-    : exposure_(scenario), stops_(scenario) {}
+SafetyCollector::SafetyCollector(const Scenario& scenario, std::vector<OutlinePoint> outline)
+    : exposure_(scenario), stops_(scenario), scene_(std::move(outline)) {}
 
 void SafetyCollector::Add(const TickRecord& record) {
   exposure_.Add(record);

@@ -16,7 +16,8 @@ namespace predictor::assessment {
 // Collects the records of a run.
 class SafetyCollector {
  public:
-  explicit SafetyCollector(const Scenario& scenario);
+  // `outline`: see SceneMotion.
+  explicit SafetyCollector(const Scenario& scenario, std::vector<OutlinePoint> outline = {});
   // Adds the next record, in order.
   void Add(const TickRecord& record);
 

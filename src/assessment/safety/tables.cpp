@@ -118,8 +118,9 @@ SafetyTable LettingGoTable(const SafetyAssessment& safety) {
   }
   const Separation& s = safety.separation;
   table.notes.push_back(Formatted(
-      "At %.1f s, the scene moved at %.2f m/s. A person who walks towards the scene needs a "
-      "distance of %.2f m (ISO 13855, without the intrusion distance of a sensor). The feet are "
+      "At %.1f s, the fastest point of the scene moved at %.2f m/s. A person who walks towards the "
+      "scene needs a distance of %.2f m (ISO 13855, without the intrusion distance of a sensor). "
+      "The feet are "
       "%.2f m away%s.",
       s.time, s.speed, s.needed, s.distance,
       s.needed > s.distance ? ", which is too close to a cobot that does not detect the person"
@@ -148,8 +149,9 @@ SafetyTable ContactTable(const UnintendedContact& contact) {
     table.rows.push_back(std::move(row));
   }
   table.notes.push_back(Formatted(
-      "This table applies to contact of the person with the object or the cobot at the largest "
-      "speed of this run, %.2f m/s (at %.1f s), with an effective mass of %.1f kg. Limits: %s.",
+      "This table applies to contact of the person with the fastest point of the object or with "
+      "the cobot's end-effector at the largest speed of this run, %.2f m/s (at %.1f s), with an "
+      "effective mass of %.1f kg. Limits: %s.",
       contact.speed, contact.time, contact.robot_mass, contact.edition.c_str()));
   if (contact.clamping_force)
     table.notes.push_back(
