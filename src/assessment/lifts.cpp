@@ -37,8 +37,10 @@ std::size_t ArrivalAt(const std::vector<std::optional<Vector3>>& middle, std::si
   return low;
 }
 
+// Samples of a rise: between departure and arrival the object moves, and its lowest and its highest
+// height may be earlier and later.
 struct Rise {
-  std::size_t from = 0, to = 0;  // samples
+  std::size_t lowest = 0, from = 0, to = 0, highest = 0;
 };
 
 // Returns the last sample before the object leaves its lowest height. The object may have stayed at
@@ -61,7 +63,7 @@ std::vector<Rise> RisesOf(const std::vector<std::optional<Vector3>>& middle,
   const auto height = [&](std::size_t i) { return middle[i]->z(); };
   const auto close = [&] {
     if (holding && rising && height(high) - height(low) >= kMinLift)
-      rises.push_back({DepartureAt(middle, low, high), ArrivalAt(middle, low, high)});
+      rises.push_back({low, DepartureAt(middle, low, high), ArrivalAt(middle, low, high), high});
     rising = false;
   };
   for (std::size_t i = 0; i < middle.size(); ++i) {
@@ -141,6 +143,8 @@ void AppendLifts(const Middles& middles, std::span<const PersonSample> samples, 
     lift.end = samples[rise.to].body.time;
     lift.origin = PlaceOf(*middles[rise.from]);
     lift.destination = PlaceOf(*middles[rise.to]);
+    lift.origin.height = middles[rise.lowest]->z();
+    lift.destination.height = middles[rise.highest]->z();
     lift.vertical_force = MeanVerticalForce(samples.subspan(rise.from, rise.to - rise.from + 1));
     Judge(work, static_cast<double>(rises.size()) / minutes, &lift);
     lifts->push_back(lift);

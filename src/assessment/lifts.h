@@ -19,13 +19,16 @@ struct Lift {
   bool lowered = false;
   bool one_hand = false;      // moved with one hand: the lifting equations do not apply
   double begin = 0, end = 0;  // [s]
-  ergonomics::HandPlace origin, destination;  // points midway between the gripping hands
-  double vertical_force = 0;                  // sum over the hands, averaged over the lift, upwards
-                                              // [N]
+  // Points midway between the gripping hands at `begin` and `end`, but with the heights at which
+  // the whole rise or fall starts and ends.
+  ergonomics::HandPlace origin, destination;
+  double vertical_force = 0;       // sum over the hands, averaged over the lift, upwards
+                                   // [N]
   ergonomics::LiftTask task;       // the whole object, without the cobot, at the rate of all lifts
   ergonomics::AssistedLift niosh;  // of a lift only, not of a lowering
   ergonomics::Acceptable acceptable;  // acceptable mass by LM-MMH [kg]
-  double share_that_accepts = 0;      // share of people of the same sex, 0 … 1
+  double share_that_accepts = 0;      // share of people of the same sex, 0 … 1; meaningless if
+                                      // acceptable.outside
   // LiFFT with the largest moment during the lift [N·m], as one repetition. Without values if the
   // moment is not known.
   std::optional<double> moment, day_share;
@@ -50,7 +53,8 @@ struct LiftingWork {
 
 // Design choices [m]: a lift is a rise of at least kMinLift between two turning points of the
 // height, and a turning point is a reversal by more than kReversal. A lowering is a fall instead of
-// a rise.
+// a rise. The object leaves the first height, and arrives at the last, when it is half of kReversal
+// away.
 inline constexpr double kMinLift = 0.05;
 inline constexpr double kReversal = 0.02;
 

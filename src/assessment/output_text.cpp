@@ -148,11 +148,16 @@ std::string Sentence(const Lift& lift) {
     Append(&text, "Lifting index %s (%s), %s without the cobot. ",
            Index(lift.niosh.carried.index).c_str(), ergonomics::AssistedLift::kCarriedLabel,
            Index(lift.niosh.unassisted.index).c_str());
-  Append(&text,
-         "%s this load for a day is acceptable to %.0f %% of people of the operator's sex "
-         "(LM-MMH%s).",
-         lift.lowered ? "Lowering" : "Lifting", 100 * lift.share_that_accepts,
-         lift.acceptable.outside ? ", limited to its range" : "");
+  if (lift.acceptable.outside)
+    Append(&text,
+           "This %s is outside the range of LM-MMH, which therefore gives no share of people who "
+           "accept it.",
+           lift.lowered ? "lowering" : "lift");
+  else
+    Append(&text,
+           "%s this load for a day is acceptable to %.0f %% of people of the operator's sex "
+           "(LM-MMH).",
+           lift.lowered ? "Lowering" : "Lifting", 100 * lift.share_that_accepts);
   return text + DamageWords(lift);
 }
 
