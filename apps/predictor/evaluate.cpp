@@ -132,7 +132,8 @@ int EvaluateOne(const EvaluateOptions& options, std::vector<assessment::Lift>* l
     comparison = Compare(result, Evaluate(options, options.against, options.against_tracks));
     text += ComparisonText(*comparison);
   }
-  WriteWholeFile(page, AssessmentPage(result, PREDICTOR_VERSION));
+  WriteWholeFile(page,
+                 AssessmentPage(result, PREDICTOR_VERSION, comparison ? &*comparison : nullptr));
   if (!options.csv.empty()) WriteWholeFile(options.csv, AssessmentCsv(result));
   options.Write(text + "Wrote " + page + ". Open it in a browser.\n",
                 AssessmentJson(result, comparison ? &*comparison : nullptr));

@@ -1,12 +1,16 @@
 #include "assessment/comparison.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <filesystem>
 
 #include "assessment/output.h"
 #include "core/error.h"
 #include "core/format.h"
 #include "core/text.h"
+#include "core/text_table.h"
+#include "report/page.h"
 
 namespace predictor::assessment {
 namespace {
@@ -33,10 +37,85 @@ Difference DifferenceOf(const QuantityResult& a, const QuantityResult& b) {
   return result;
 }
 
-// Returns words about the damage that is beyond the range of its tool, or "".
-std::string RangeOf(const DamageResult& a, const DamageResult& b) {
-  return (a.outside() ? "; this" + RangeWords(a) : "") +
-         (b.outside() ? "; other" + RangeWords(b) : "");
+void SetNames(Comparison* comparison) {
+  const auto stem = [](const std::string& recording) {
+    return std::filesystem::path(recording).stem().string();
+  };
+  comparison->name_a = stem(comparison->a);
+  comparison->name_b = stem(comparison->b);
+  if (comparison->name_a != comparison->name_b) return;
+  comparison->name_a += " (first)";
+  comparison->name_b += " (second)";
+}
+
+struct ComparedRow {
+  std::string name, a, b, difference, better;
+  const Difference* of = nullptr;  // null: the header or a damage
+};
+
+ComparedRow HeaderOf(const Comparison& c) {
+  return {"", Printable(c.name_a), Printable(c.name_b),
+          Printable(c.name_a + " − " + c.name_b) + " (90 %)",
+          Printable(c.name_a) + " is better for"};
+}
+
+std::vector<ComparedRow> RowsOf(const Comparison& comparison) {
+  std::vector<ComparedRow> rows = {HeaderOf(comparison)};
+  for (const Difference& d : comparison.differences) {
+    const QuantityKind& kind = *d.kind;
+    if (kind.of_joint) continue;
+    ComparedRow row = {WithUnit(std::string(kind.group) + ", " + kind.label, kind.unit),
+                       ValueText(kind, d.a),
+                       ValueText(kind, d.b),
+                       "",
+                       "",
+                       &d};
+    if (d.interval) {
+      row.difference = RangeText(kind, d.interval);
+      row.better = Formatted("%.0f %%", 100 * *d.share_better);
+    }
+    rows.push_back(row);
+  }
+  for (const DamageResult& a : comparison.damage_a)
+    for (const DamageResult& b : comparison.damage_b)
+      if (a.tool == b.tool && a.part == b.part)
+        rows.push_back({a.tool + ", " + a.part + ", reference day per run [%]",
+                        Formatted("%.3g", 100 * a.day_share), Formatted("%.3g", 100 * b.day_share),
+                        "", ""});
+  return rows;
+}
+
+std::vector<std::string> NotesOf(const Comparison& comparison) {
+  std::vector<std::string> notes = {Formatted(
+      "The values are 95th percentiles over time (5th percentile for balance) of the nominal "
+      "posture. A positive difference means that the value of %s is larger. The last column "
+      "contains the share of 64 possible postures and bodies for which %s has the better value.",
+      Printable(comparison.name_a).c_str(), Printable(comparison.name_a).c_str())};
+  const auto add = [&](const std::string& name, const std::vector<DamageResult>& damage) {
+    for (const DamageResult& d : damage)
+      if (d.outside())
+        notes.push_back(Printable(name) + ": " + d.tool + ", " + d.part + RangeWords(d) + ".");
+  };
+  add(comparison.name_a, comparison.damage_a);
+  add(comparison.name_b, comparison.damage_b);
+  return notes;
+}
+
+// Draws the 90 % interval as a bar, the difference of the nominal posture as a dot, and a line at
+// 0.
+std::string DrawnDifference(const Difference& d) {
+  if (!d.interval || !std::isfinite(d.a - d.b)) return "";
+  const double nominal = d.a - d.b, low = d.interval->low, high = d.interval->high;
+  const double most = std::max({std::abs(low), std::abs(high), std::abs(nominal)});
+  constexpr double kHalf = 60, kBorder = 5;  // [px]
+  const auto at = [&](double x) { return kHalf + kBorder + (most > 0 ? kHalf * x / most : 0); };
+  return Formatted(
+      "<svg class=\"difference\" width=\"%.0f\" height=\"14\" role=\"img\" "
+      "aria-label=\"difference\"><path d=\"M%.1f 0V14\" stroke=\"currentColor\" "
+      "stroke-opacity=\"0.4\"/><path d=\"M%.1f 7H%.1f\" stroke=\"currentColor\" "
+      "stroke-width=\"3\" stroke-opacity=\"0.6\"/><circle cx=\"%.1f\" cy=\"7\" r=\"4\" "
+      "fill=\"currentColor\"/></svg>",
+      2 * (kHalf + kBorder), at(0), at(low), at(high), at(nominal));
 }
 
 }  // namespace
@@ -47,50 +126,64 @@ Comparison Compare(const Assessment& a, const Assessment& b) {
         b.recording,
         "The operator's body differs from that of " + a.recording +
             ". Give both runs the same body, for example with --set operator.body.height=1.75.");
-  Comparison comparison = {a.recording, b.recording, {}, a.damage, b.damage, ""};
+  Comparison comparison;
+  comparison.a = a.recording;
+  comparison.b = b.recording;
+  comparison.damage_a = a.damage;
+  comparison.damage_b = b.damage;
+  SetNames(&comparison);
   for (const QuantityResult& of_a : a.quantities)
     for (const QuantityResult& of_b : b.quantities)
       if (of_a.kind == of_b.kind) comparison.differences.push_back(DifferenceOf(of_a, of_b));
   constexpr double kSameLength = 0.1;
   if (std::abs(a.held - b.held) > kSameLength * std::max(a.held, b.held))
     comparison.warning = Formatted(
-        "The hands held the handles for %.1f s in one run and for %.1f s in the other. A run that "
-        "ended early looks better than a complete run.",
-        a.held, b.held);
+        "The hands held the handles for %.1f s in %s and for %.1f s in %s. A run that ended early "
+        "looks better than a complete run.",
+        a.held, Printable(comparison.name_a).c_str(), b.held, Printable(comparison.name_b).c_str());
   return comparison;
 }
 
+std::string ComparisonTitle(const Comparison& comparison) {
+  return Printable(comparison.name_a) + " compared with " + Printable(comparison.name_b);
+}
+
 std::string ComparisonText(const Comparison& comparison) {
-  std::string text;
-  AppendLine(&text, "\n%s compared with %s, for the same person", Printable(comparison.a).c_str(),
-             Printable(comparison.b).c_str());
-  if (!comparison.warning.empty()) AppendLine(&text, "%s", comparison.warning.c_str());
-  AppendLine(&text, "%-52s %8s %8s  %-19s %s", "", "this", "other", "difference (90 %)",
-             "better for");
-  for (const Difference& d : comparison.differences) {
-    if (d.kind->of_joint) continue;
-    const Unit& unit = d.kind->unit;
-    const auto value = [&](double x) { return ValueText(*d.kind, x); };
-    const std::string name = WithUnit(std::string(d.kind->group) + ", " + d.kind->label, unit);
-    std::string line =
-        Formatted("%-52s %8s %8s", name.c_str(), value(d.a).c_str(), value(d.b).c_str());
-    if (d.interval)
-      Append(&line, "  %-19s %3.0f %%",
-             (value(d.interval->low) + " … " + value(d.interval->high)).c_str(),
-             100 * *d.share_better);
-    AppendLine(&text, "%s", line.c_str());
+  std::string text = "\n" + ComparisonTitle(comparison) + ", for the same person\n";
+  if (!comparison.warning.empty()) AppendLine(&text, "Warning: %s", comparison.warning.c_str());
+  const std::vector<ComparedRow> rows = RowsOf(comparison);
+  std::array<std::size_t, 4> widths = {};
+  for (const ComparedRow& row : rows) {
+    const std::array cells = {&row.name, &row.a, &row.b, &row.difference};
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      widths[i] = std::max(widths[i], CharactersIn(*cells[i]));
   }
-  for (const DamageResult& a : comparison.damage_a)
-    for (const DamageResult& b : comparison.damage_b)
-      if (a.tool == b.tool && a.part == b.part)
-        AppendLine(&text, "%-52s %8.3g %8.3g%s",
-                   (a.tool + ", " + a.part + ", reference day per run [%]").c_str(),
-                   100 * a.day_share, 100 * b.day_share, RangeOf(a, b).c_str());
-  text +=
-      "The values are 95th percentiles over time (5th percentile for balance). The column \"Better "
-      "for\" contains the share of 64 possible postures and bodies for which this recording has "
-      "the better value. With --json, the comparison also contains the joints of the arms.\n";
-  return text;
+  for (const ComparedRow& row : rows) {
+    std::string line = LeftAligned(row.name, widths[0]) + "  " + RightAligned(row.a, widths[1]) +
+                       "  " + RightAligned(row.b, widths[2]) + "  " +
+                       LeftAligned(row.difference, widths[3]) + "  " + row.better;
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  }
+  for (const std::string& note : NotesOf(comparison)) text += note + "\n";
+  return text + "With --json, the comparison also contains the joints of the arms.\n";
+}
+
+std::string ComparisonHtml(const Comparison& comparison) {
+  std::string html;
+  if (!comparison.warning.empty())
+    html += "<p class=\"warning\">Warning: " + EscapeMarkup(comparison.warning) + "</p>\n";
+  std::vector<std::vector<std::string>> table;
+  for (const ComparedRow& row : RowsOf(comparison))
+    table.push_back({EscapeMarkup(row.name), EscapeMarkup(row.a), EscapeMarkup(row.b),
+                     EscapeMarkup(row.difference), row.of ? DrawnDifference(*row.of) : "",
+                     EscapeMarkup(row.better)});
+  table.front()[0] = "Quantity";
+  html += HtmlTable(table);
+  for (const std::string& note : NotesOf(comparison)) html += "<p>" + EscapeMarkup(note) + "</p>\n";
+  return html +
+         "<p class=\"caption\">Bars: the 90 % interval of the difference. Dots: the difference for "
+         "the nominal posture. Vertical lines: 0. Each row has its own scale.</p>\n";
 }
 
 }  // namespace predictor::assessment

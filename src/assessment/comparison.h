@@ -19,7 +19,8 @@ struct Difference {
 };
 
 struct Comparison {
-  std::string a, b;  // recordings
+  std::string a, b;            // recordings
+  std::string name_a, name_b;  // the same without their endings, and different
   std::vector<Difference> differences;
   std::vector<DamageResult> damage_a, damage_b;
   std::string warning;  // why the runs can hardly be compared; empty if they can
@@ -30,5 +31,9 @@ struct Comparison {
 Comparison Compare(const Assessment& a, const Assessment& b);
 
 std::string ComparisonText(const Comparison& comparison);
+// Returns a chapter's title such as "light compared with heavy".
+std::string ComparisonTitle(const Comparison& comparison);
+// Returns the HTML of the chapter: warnings, and a table in which each difference is drawn.
+std::string ComparisonHtml(const Comparison& comparison);
 
 }  // namespace predictor::assessment

@@ -22,7 +22,9 @@ std::string AssessmentSchema();
 // Returns one row for each time of the nominal person, with every quantity and score, and the 90 %
 // intervals where they were computed.
 std::string AssessmentCsv(const Assessment& a);
-std::string AssessmentPage(const Assessment& a, const std::string& program_version);
+// With a comparison, its chapter is the first of the page.
+std::string AssessmentPage(const Assessment& a, const std::string& program_version,
+                           const Comparison* comparison = nullptr);
 
 // The person of a run in a report: the assessment, or a sentence that explains its absence.
 struct PersonOfRun {

@@ -373,12 +373,18 @@ void AddComparison(std::span<const PersonOfRun> runs, ReportPage* page) {
 
 }  // namespace
 
-std::string AssessmentPage(const Assessment& a, const std::string& program_version) {
+std::string AssessmentPage(const Assessment& a, const std::string& program_version,
+                           const Comparison* comparison) {
   std::string words = "<p>" + EscapeMarkup(a.recording) + " · evaluated by PREDICTOR " +
                       EscapeMarkup(program_version) + "</p>\n";
-  ReportPage page("The person in: " + a.scenario, words);
+  ReportPage page(
+      comparison ? ComparisonTitle(*comparison) : "The person in: " + Printable(a.scenario), words);
   Outline outline(&page, true);
-  outline.Begin("summary", "Summary");
+  if (comparison) {
+    outline.Begin("comparison", "Compared with " + Printable(comparison->b));
+    page.Html(ComparisonHtml(*comparison));
+  }
+  outline.Begin("summary", comparison ? "Summary of " + Printable(a.recording) : "Summary");
   AddSummary(a, &page);
   AddParts(a, &outline);
   return page.Finish();

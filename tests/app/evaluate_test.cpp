@@ -109,8 +109,13 @@ TEST_F(Evaluate, AReportShowsThePersonOrWhatIsMissing) {
 
 TEST_F(Evaluate, ComparesTwoDesigns) {
   const std::string light = Record("box_9kg"), heavy = Record("box_18kg");
-  Child child({"evaluate", light, "--against", heavy, "--json", "-"});
+  const std::string page = folder_.path() / "compared.html";
+  Child child({"evaluate", light, "--against", heavy, "--json", "-", "-o", page});
   ASSERT_EQ(child.Wait(), 0) << child.errors();
+  std::ifstream file(page);
+  const std::string html((std::istreambuf_iterator<char>(file)), {});
+  EXPECT_TRUE(Contains(html, "box_9kg compared with box_18kg"));
+  EXPECT_TRUE(Contains(html, "box_9kg − box_18kg (90 %)"));
   const auto json = nlohmann::json::parse(child.output());
   EXPECT_EQ(json["against"]["recording"], "box_18kg.mcap");
   EXPECT_TRUE(json["against"]["quantities"].contains("lower_back.compression_n"));

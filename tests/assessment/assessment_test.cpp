@@ -227,6 +227,35 @@ TEST(Assessment, DesignsAreComparedForTheSamePossiblePersons) {
   EXPECT_THROW(Compare(Judge(5), Judge(5, false, {.height = 1.6, .mass = 60})), InputError);
 }
 
+// The text and the page name both runs, and state what the sign of a difference means. The drawing
+// of a negative difference is to the left of zero.
+TEST(Assessment, AComparisonNamesBothRunsAndIsTheFirstChapterOfThePage) {
+  Assessment light = Judge(5, true), heavy = Judge(40, true);
+  light.recording = "light.mcap";
+  heavy.recording = "heavy.mcap";
+  const Comparison comparison = Compare(light, heavy);
+  const std::string text = ComparisonText(comparison);
+  const std::string page = AssessmentPage(light, "1.0", &comparison);
+  for (const char* words : {"light compared with heavy", "light − heavy (90 %)",
+                            "light is better for", "the value of light is larger"}) {
+    EXPECT_NE(text.find(words), std::string::npos) << words;
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+  }
+  const std::size_t chapter = page.find("Compared with heavy.mcap");
+  ASSERT_NE(chapter, std::string::npos);
+  EXPECT_LT(chapter, page.find("Summary of light.mcap"));
+  // All people have a smaller moment with the smaller force. The zero is at 65 px.
+  const std::size_t row = page.find("moment caused by the hands", chapter);
+  const std::size_t dot = page.find("<circle cx=\"", row);
+  ASSERT_NE(dot, std::string::npos);
+  EXPECT_LT(std::stod(page.substr(dot + 12)), 65);
+  EXPECT_EQ(AssessmentPage(light, "1.0").find("Compared with"), std::string::npos);
+  heavy.recording = "light.person.csv";
+  light.recording = "light.person.csv";
+  EXPECT_EQ(ComparisonTitle(Compare(light, heavy)),
+            "light.person (first) compared with light.person (second)");
+}
+
 // ---- output -----------------------------------------------------------------------------------
 
 using Json = nlohmann::json;
