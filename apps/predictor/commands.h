@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lab_streams/stream_process.h"
 #include "recorded_run.h"
 #include "ros_tcp/ros_tcp_process.h"
 #include "scenario/machine.h"
@@ -75,6 +76,7 @@ struct ServeOptions {
   std::optional<bool> stay;
   viewer::ViewerOptions page;
   bool evaluation = true;  // the person is judged live, if the scenario describes the person
+  lab_streams::StreamOptions streams;  // that measure the person
   bool ros_tcp = false;
   ros_tcp::RosTcpOptions ros;
 };

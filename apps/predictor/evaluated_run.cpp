@@ -1,5 +1,7 @@
 #include "evaluated_run.h"
 
+#include <span>
+
 #include "assessment/measured_head.h"
 #include "core/error.h"
 #include "models/object_model.h"
@@ -60,6 +62,27 @@ std::optional<tracks::BodyTrack> HeadOf(const RecordingReader& reader) {
   return track;
 }
 
+// Returns the streams that other systems sent during the run. A stream that cannot be used is left
+// out, and the reason is printed.
+std::vector<tracks::BodyTrack> StreamsOf(const RecordingReader& reader) {
+  std::vector<tracks::BodyTrack> tracks;
+  for (const RecordedStream& recorded : reader.ReadStreams()) {
+    if (recorded.times.empty()) continue;
+    try {
+      tracks::StreamTrack stream(tracks::ParseStream(recorded.description));
+      const std::span<const double> values = recorded.values;
+      for (std::size_t i = 0; i < recorded.times.size(); ++i)
+        stream.Take(recorded.times[i], values.subspan(i * recorded.channels, recorded.channels));
+      stream.Convert();
+      tracks::BodyTrack& track = tracks.emplace_back(stream.track());
+      track.of_the_run = true;
+    } catch (const InputError& error) {
+      TheScreen().Print(std::string("A stream in the recording is not used: ") + error.what());
+    }
+  }
+  return tracks;
+}
+
 EvaluatedRun OpenTicks(const std::string& file, const PersonOptions& options) {
   RecordingReader reader(file);
   const RecordingHeader& header = reader.header();
@@ -82,6 +105,7 @@ EvaluatedRun OpenTicks(const std::string& file, const PersonOptions& options) {
   if (run.masses) run.object_mass = run.masses->object;
   run.start_unix = 1e-9 * static_cast<double>(header.start_unix_ns);
   if (auto head = HeadOf(reader)) run.tracks.push_back(std::move(*head));
+  for (tracks::BodyTrack& stream : StreamsOf(reader)) run.tracks.push_back(std::move(stream));
   return run;
 }
 

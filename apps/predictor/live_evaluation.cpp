@@ -7,8 +7,14 @@
 
 namespace predictor {
 
+std::vector<std::string> PersonStreams::Texts() const {
+  std::vector<std::string> texts;
+  for (const tracks::StreamDescription& stream : process.streams()) texts.push_back(TextOf(stream));
+  return texts;
+}
+
 LiveEvaluation::LiveEvaluation(bool wanted, const Scenario& scenario, const Shared<RunBoard>& board,
-                               const Shared<RunMailbox>* mailbox,
+                               const Shared<RunMailbox>* mailbox, const PersonStreams* streams,
                                const std::function<void(const std::string&)>& show) {
   if (!wanted) {
     why_not_ = "The evaluation of the person was switched off with --no-evaluation.";
@@ -20,7 +26,9 @@ LiveEvaluation::LiveEvaluation(bool wanted, const Scenario& scenario, const Shar
   }
   try {
     states_.emplace();
-    process_.emplace(scenario, board, *states_, mailbox, show);
+    process_.emplace(
+        scenario, board, *states_, mailbox, streams ? &streams->board : nullptr,
+        streams ? streams->process.streams() : std::vector<tracks::StreamDescription>{}, show);
   } catch (const std::exception& error) {
     why_not_ = std::string("The person is not evaluated: ") + error.what();
     show(why_not_);

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "crash_message.h"
 #include "evaluator/evaluator_process.h"
+#include "lab_streams/stream_process.h"
 #include "plugin_watch.h"
 #include "screen.h"
 #include "watchdog/watchdog_process.h"
@@ -45,6 +46,7 @@ int RunHelperProcess(int argc, char** argv) {
   if (name == ros_tcp::kRosTcpSubcommand) return ros_tcp::RosTcpMain();
   if (name == watchdog::kWatchdogSubcommand) return watchdog::WatchdogMain();
   if (name == evaluator::kEvaluatorSubcommand) return evaluator::EvaluatorMain();
+  if (name == lab_streams::kStreamSubcommand) return lab_streams::StreamMain();
   return -1;
 }
 

@@ -21,8 +21,13 @@ namespace {
 
 constexpr double kSnapshotTime = 10;  // time between saved states [s]
 
-RecorderOptions Options(const EvaluationBoard* person = nullptr, const HeadRing* heads = nullptr) {
+RecorderOptions Options(const EvaluationBoard* person = nullptr, const HeadRing* heads = nullptr,
+                        const PersonStreams* streams = nullptr) {
   RecorderOptions options;
+  if (streams) {
+    options.samples = &(*streams->board).samples;
+    options.streams = streams->Texts();
+  }
   options.person = person;
   options.heads = heads;
   options.snapshot_bytes = kStateBytes;
@@ -30,10 +35,15 @@ RecorderOptions Options(const EvaluationBoard* person = nullptr, const HeadRing*
   return options;
 }
 
-std::vector<JsonChannel> ChannelsOf(const Emulator& emulator, const EvaluationBoard* person) {
+std::vector<JsonChannel> ChannelsOf(const Emulator& emulator, const EvaluationBoard* person,
+                                    const PersonStreams* streams) {
   auto channels = RecordedScene(emulator.scenario(), emulator.setup().object_start);
   channels.push_back(HeadChannel());
   if (person) channels.push_back(PersonChannel());
+  if (streams) {
+    channels.push_back(StreamsChannel());
+    channels.push_back(SamplesChannel());
+  }
   return channels;
 }
 
@@ -130,11 +140,12 @@ std::string VirtualRecording::Summary() const {
 }
 
 RunRecording::RunRecording(const Emulator& emulator, const RecordOptions& options, RunBoard* board,
-                           const EvaluationBoard* person, const HeadRing& heads)
+                           const EvaluationBoard* person, const HeadRing& heads,
+                           const PersonStreams* streams)
     : board_(board),
       file_(options.file.empty() ? NewRecordingName(emulator.scenario()) : options.file),
-      recorder_(file_, HeaderOf(emulator, options), board->records, Options(person, &heads),
-                ChannelsOf(emulator, person)),
+      recorder_(file_, HeaderOf(emulator, options), board->records,
+                Options(person, &heads, streams), ChannelsOf(emulator, person, streams)),
       open_(std::in_place, file_, [this] { Close(false, false); }) {
   Look();
 }

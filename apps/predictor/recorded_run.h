@@ -13,6 +13,7 @@
 #include "core/shared_run.h"
 #include "emulator/emulator.h"
 #include "emulator/run_loop.h"
+#include "live_evaluation.h"
 #include "open_recording.h"
 #include "recording/header.h"
 #include "recording/reader.h"
@@ -71,10 +72,10 @@ class RunRecording final : public SnapshotSink {
   // Records everything that is published on the board after this call. The file is `options.file`
   // or, if this name is empty, the file of NewRecordingName. The board shows whether the recorder
   // is recording. `person` is the board of the evaluator's states, which are also recorded, or
-  // null. `heads` are the measured heads, which are also recorded. The boards and the heads are
-  // borrowed. Throws InputError.
+  // null. `heads` are the measured heads, which are also recorded, and so are `streams`, or null.
+  // The boards, the heads and the streams are borrowed. Throws InputError.
   RunRecording(const Emulator& emulator, const RecordOptions& options, RunBoard* board,
-               const EvaluationBoard* person, const HeadRing& heads);
+               const EvaluationBoard* person, const HeadRing& heads, const PersonStreams* streams);
 
   std::span<std::byte> AcquireBuffer() noexcept override { return recorder_.SnapshotBuffer(); }
   void Commit(std::uint64_t tick, std::size_t bytes) noexcept override {

@@ -197,7 +197,7 @@ int ReplayCommand(const RecordingOptions& recording, const ServeOptions& options
   Player player(&reader, &*board, &*mailbox);
   const auto show = [](const std::string& text) { TheScreen().Print(text); };
   // A head in the mailbox is that of a person who watches the replay.
-  const LiveEvaluation evaluation(options.evaluation, scenario, board, nullptr, show);
+  const LiveEvaluation evaluation(options.evaluation, scenario, board, nullptr, nullptr, show);
   viewer::ViewerOptions page = options.page;
   page.why_not_judged = evaluation.why_not();
   page.secret = viewer::NewAdmissionSecret();

@@ -121,10 +121,13 @@ class Run {
         emulator_(scenario, std::move(device)) {
     PrintSetup(emulator_, options.quiet);
     const auto show = [](const std::string& text) { TheScreen().Print(text); };
-    evaluation_.emplace(serve.evaluation, scenario, board_, &mailbox_, show);
+    if (!serve.streams.streams.empty()) streams_.emplace(serve.streams, show);
+    const PersonStreams* streams = streams_ ? &*streams_ : nullptr;
+    evaluation_.emplace(serve.evaluation, scenario, board_, &mailbox_, streams, show);
     if (!record.off) {
       options.MakeRoom(record.file);
-      recording_.emplace(emulator_, record, &*board_, evaluation_->board(), mailbox_->heads);
+      recording_.emplace(emulator_, record, &*board_, evaluation_->board(), mailbox_->heads,
+                         streams);
     }
     if (machine) {
       watchdog_.emplace(*machine, std::array{scenario.Has(0), scenario.Has(1)}, board_, show);
@@ -278,6 +281,7 @@ class Run {
   Shared<RunBoard> board_;
   Shared<RunMailbox> mailbox_;  // messages from pages
   Shared<StopMailbox> stops_;   // messages from ROS-TCP clients
+  std::optional<PersonStreams> streams_;
   std::optional<LiveEvaluation> evaluation_;
   std::optional<RunRecording> recording_;
   std::optional<watchdog::WatchdogProcess> watchdog_;

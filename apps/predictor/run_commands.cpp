@@ -58,6 +58,18 @@ void AddEvaluation(CLI::App* app, ServeOptions* o) {
       ->group("Person");
 }
 
+void AddStreams(CLI::App* app, lab_streams::StreamOptions* o) {
+  AddOption(
+      app, "Person", "--person-stream", &o->streams, "NAME|MAP",
+      "Measure the person with this stream of the Lab Streaming Layer: its name, or a mapping "
+      "(.yaml) that names it (repeatable)")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+  AddOption(app, "Person", "--lsl-library", &o->library, "FILE",
+            "The library of the Lab Streaming Layer, liblsl.so [default: that of the system]");
+}
+
 void AddRun(CLI::App* app, Request* r) {
   CLI::App* run = AddCommand(app, kRunGroup, "run", "Run a scenario in real time", r, [r] {
     TakeBody(r->record, &r->scenario);
@@ -84,6 +96,7 @@ void AddRun(CLI::App* app, Request* r) {
                    "Record to this file [default: a new file in runs/, about 90 MB per minute]");
   run->add_flag("--no-record", r->record.off, "Do not record")->group("Recording");
   AddEvaluation(run, &r->serve);
+  AddStreams(run, &r->serve.streams);
   AddRosOptions(run, &r->serve);
   AddOutput(run, &r->scenario);
   run->footer(

@@ -23,7 +23,7 @@ bool LiveChain::Next(bool all, JudgedSample* judged) {
   if (next_ >= known) return false;
   std::size_t end = next_ + 1;  // end of the uninterrupted part
   while (end < known && samples_[end].continues) ++end;
-  if (!all && end == known && next_ + kLiveDelay >= known) return false;
+  if (!all && end == known && next_ + delay_ >= known) return false;
   std::size_t begin = next_;
   while (begin > 0 && next_ - begin < kLiveHistory && samples_[begin].continues) --begin;
   std::vector<person::BodyVector> q;
@@ -33,7 +33,8 @@ bool LiveChain::Next(bool all, JudgedSample* judged) {
   judged->motion = MotionsOfPart(q)[next_ - begin];
   judged->frame =
       person_.Judge({judged->sample.body, judged->force_rate}, judged->motion, postures_[next_]);
-  muscles_.Add(judged->sample.body, judged->motion, &judged->frame);
+  muscles_.Add(judged->sample.body, judged->motion, &judged->frame,
+               measured_ ? measured_(judged->sample) : std::array<MeasuredActivations, kHands>{});
   ++next_;
   return true;
 }

@@ -1,7 +1,10 @@
 // The nominal chain for a run in progress, which processes sample by sample with a fixed delay.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "assessment/muscle_use.h"
@@ -17,6 +20,10 @@ inline constexpr std::size_t kLiveDelay = 10;
 // no more influence.
 inline constexpr std::size_t kLiveHistory = 60;
 
+// Activations from electromyograms need later values of the electromyogram (kEmgSettling, less the
+// muscle's delay of at least 0.01 s), so loads are then judged this many samples late.
+inline constexpr std::size_t kLiveDelayWithEmg = 17;
+
 struct JudgedSample {
   PersonSample sample;
   std::array<double, kHands> force_rate = {};  // see FrameInput
@@ -29,8 +36,13 @@ struct JudgedSample {
 // samples. Otherwise, the motions are approximately the same.
 class LiveChain {
  public:
-  LiveChain(const PersonSetup& setup, const WorkPattern& work)
-      : person_(setup, work), muscles_(setup) {}
+  // Returns the activations that were measured at a sample.
+  using Activations = std::function<std::array<MeasuredActivations, kHands>(const PersonSample&)>;
+
+  // `delay` is kLiveDelay or, with electromyograms, kLiveDelayWithEmg. `measured` may be null.
+  LiveChain(const PersonSetup& setup, const WorkPattern& work, std::size_t delay = kLiveDelay,
+            Activations measured = {})
+      : person_(setup, work), muscles_(setup), delay_(delay), measured_(std::move(measured)) {}
 
   // Takes the next sample in which a hand holds a handle.
   void Add(const PersonSample& sample);
@@ -48,6 +60,8 @@ class LiveChain {
 
   NominalPerson person_;
   ArmMuscles muscles_;
+  std::size_t delay_;
+  Activations measured_;
   std::vector<PersonSample> samples_;  // same indices as postures_
   std::vector<person::Posture> postures_;
   std::size_t next_ = 0;  // the next sample to be judged

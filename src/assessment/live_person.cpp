@@ -50,8 +50,9 @@ bool IsBelowGround(const PersonSample& sample, const person::Stance& stance) {
 
 }  // namespace
 
-LivePerson::LivePerson(const Scenario& scenario, const WorkPattern& work)
-    : scenario_(scenario), work_(work), builder_(scenario), exposure_(scenario) {
+LivePerson::LivePerson(const Scenario& scenario, const WorkPattern& work,
+                       std::span<const tracks::StreamDescription> streams)
+    : scenario_(scenario), work_(work), builder_(scenario), streams_(streams), exposure_(scenario) {
   if (const auto missing = MissingForPosture(scenario); !missing.empty())
     throw InputError(Join(missing, " "));
   person::AnthropometryOf(*scenario.operator_.body);
@@ -76,7 +77,12 @@ bool LivePerson::Add(const TickRecord& record) {
 void LivePerson::Begin() {
   if (!setup_) setup_ = SetupOf(scenario_, builder_.first());
   work_.strength = setup_->body.strength;
-  chain_.emplace(*setup_, work_);
+  if (streams_.has_emg())
+    chain_.emplace(*setup_, work_, kLiveDelayWithEmg, [this](const PersonSample& sample) {
+      return streams_.ActivationsAt(ClockOf(sample), sample.body.time, &state_);
+    });
+  else
+    chain_.emplace(*setup_, work_);
   intervals_.emplace(*setup_, work_);
 }
 
@@ -100,7 +106,13 @@ bool LivePerson::Wait(const TickRecord& record) {
   return true;
 }
 
+// Returns the monotonic clock at the sample [s].
+double LivePerson::ClockOf(const PersonSample& sample) const {
+  return 1e-9 * static_cast<double>(builder_.start_ns()) + sample.by_clock;
+}
+
 void LivePerson::Take(PersonSample sample) {
+  streams_.Update(ClockOf(sample), sample.body.time, &state_);
   const bool below = IsBelowGround(sample, setup_->stance);
   if (below)
     for (person::HandSample& hand : sample.body.hands) hand.present = false;
@@ -111,8 +123,8 @@ void LivePerson::Take(PersonSample sample) {
 }
 
 void LivePerson::TakeHeld(PersonSample sample) {
-  const double start = 1e-9 * static_cast<double>(builder_.start_ns());
-  state_.head = head_.AddTo(&sample, start + sample.by_clock, *setup_);
+  state_.head = head_.AddTo(&sample, ClockOf(sample), *setup_);
+  streams_.AddTo(ClockOf(sample), *setup_, &sample, &state_);
   chain_->Add(sample);
   const person::Posture& posture = chain_->newest();
   state_.status = PersonStatus::kJudged;

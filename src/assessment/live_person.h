@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "assessment/hand_samples.h"
 #include "assessment/live_chain.h"
 #include "assessment/live_exposure.h"
+#include "assessment/live_streams.h"
 #include "assessment/live_values.h"
 #include "assessment/measured_head.h"
 #include "core/person_state.h"
@@ -16,7 +18,9 @@ namespace predictor::assessment {
 class LivePerson {
  public:
   // Throws InputError if something is missing (MissingForPosture) or no adult has such a body.
-  LivePerson(const Scenario& scenario, const WorkPattern& work);
+  // Also throws InputError if a stream cannot be used (LiveStreams).
+  LivePerson(const Scenario& scenario, const WorkPattern& work,
+             std::span<const tracks::StreamDescription> streams = {});
 
   // Takes the next tick of a run or of a replay. Returns whether state() has changed. A repeated
   // tick is ignored. If an earlier tick follows, damage and fatigue start again. Throws InputError
@@ -25,12 +29,15 @@ class LivePerson {
   // The measured head. Before you add a tick, add the heads that arrived, and wait while a head of
   // this tick is awaited (LiveHead::IsAwaited).
   LiveHead& head() { return head_; }
+  // What other systems measure. The same applies as for the head.
+  LiveStreams& streams() { return streams_; }
   const PersonState& state() const { return state_; }
 
  private:
   void BeginAgain();
   void Begin();
   bool Wait(const TickRecord& record);
+  double ClockOf(const PersonSample& sample) const;
   void Take(PersonSample sample);
   void TakeHeld(PersonSample sample);
   void Judge(bool all);
@@ -43,6 +50,7 @@ class LivePerson {
   SampleBuilder builder_;
   HeldFilter held_;
   LiveHead head_;
+  LiveStreams streams_;
   std::optional<LiveChain> chain_;
   std::optional<LiveIntervals> intervals_;
   LiveExposure exposure_;

@@ -13,9 +13,6 @@
 namespace predictor::assessment {
 namespace {
 
-// A share of the person's height (design choice), which only needs to reveal a wrong frame.
-constexpr double kElbowToHandle = 0.4;
-
 struct Finding {
   PositionCount count;
   std::vector<double> heights, distances;  // the impossible positions, in S [m]
@@ -26,6 +23,11 @@ struct Finding {
     distances.push_back(std::hypot(p.x(), p.y()));
   }
 };
+
+// Returns the time of a sample by the clock of the track [s].
+double TimeOf(const PersonSample& sample, const UsedTrack& track) {
+  return (track.by_clock ? sample.by_clock : sample.recorded) - track.offset;
+}
 
 double Share(std::size_t count, std::size_t all) {
   return static_cast<double>(count) / static_cast<double>(all);
@@ -53,7 +55,7 @@ void AddHead(const tracks::PartTrack& head, const UsedTrack& track, const Person
   Finding finding;
   std::size_t positions = 0, rotations = 0;
   for (PersonSample& sample : *samples) {
-    const double time = track.by_clock ? sample.by_clock : sample.recorded - track.offset;
+    const double time = TimeOf(sample, track);
     const HeadSource source = AddHeadAt(time, head, setup, &sample, &finding.count);
     if (source == HeadSource::kImpossible) finding.AddImpossible(setup, *head.PositionAt(time));
     if (source != HeadSource::kMeasured) continue;
@@ -74,7 +76,7 @@ void AddElbow(const tracks::PartTrack& elbow, int hand, const UsedTrack& track,
   std::vector<double> to_handle;
   std::size_t positions = 0;
   for (PersonSample& sample : *samples) {
-    const auto p = elbow.PositionAt(sample.recorded - track.offset);
+    const auto p = elbow.PositionAt(TimeOf(sample, track));
     if (!p) continue;
     ++finding.count.measured;
     if (!IsPossible(setup, *p)) {
@@ -103,7 +105,7 @@ void AddSignals(const tracks::BodyTrack& track, const UsedTrack& used,
     MeasuredSignal result{signal.name, signal.unit, used.source, 0, {}};
     std::size_t measured = 0;
     for (const PersonSample& sample : samples) {
-      result.values.push_back(signal.At(sample.recorded - used.offset, 1 / kSampleRate));
+      result.values.push_back(signal.At(TimeOf(sample, used), 1 / kSampleRate));
       measured += std::isfinite(result.values.back()) ? 1 : 0;
     }
     result.share = Share(measured, samples.size());
@@ -205,7 +207,9 @@ void AddTrack(const tracks::BodyTrack& track, const PersonSetup& setup, double s
     if (const auto& elbow = track.elbows[static_cast<std::size_t>(hand)])
       AddElbow(*elbow, hand, used, setup, samples, body);
   AddSignals(track, used, *samples, body);
-  AddEmg(track, used.offset, *samples, &body->emg);
+  std::vector<double> times;
+  for (const PersonSample& sample : *samples) times.push_back(TimeOf(sample, used));
+  AddEmg(track, times, &body->emg);
   CheckUnique(*body);
 }
 

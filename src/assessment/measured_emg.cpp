@@ -43,25 +43,8 @@ bool Changes(const std::vector<Part>& parts) {
   return false;
 }
 
-// The activations computed from a channel, at its own times, without the ends of its parts.
-struct Activations {
-  std::vector<double> times, values;
-  double largest = 0;
-  std::size_t above = 0;
-
-  // Returns the mean activation within `width` around `time`, or NaN outside of a part.
-  double At(double time, double width) const {
-    const auto begin = std::ranges::lower_bound(times, time - width / 2);
-    const auto end = std::ranges::lower_bound(times, time + width / 2);
-    if (begin == end) return kNone;
-    double sum = 0;
-    for (auto i = begin; i != end; ++i) sum += values[static_cast<std::size_t>(i - times.begin())];
-    return sum / static_cast<double>(end - begin);
-  }
-};
-
 // Throws InputError if the sampling rate is too low for the filter's pass band.
-void AddPart(const Part& part, const tracks::EmgMap& map, Activations* all) {
+void AddPart(const Part& part, const tracks::EmgMap& map, EmgActivations* all) {
   muscles::EmgProcessing how;
   const double rate = static_cast<double>(part.times.size() - 1) / part.Duration();
   how.rate = std::round(1e3 * rate) / 1e3;  // rounded for messages
@@ -81,26 +64,6 @@ void AddPart(const Part& part, const tracks::EmgMap& map, Activations* all) {
     all->times.push_back(part.times[i]);
     all->values.push_back(activation[i]);
   }
-}
-
-// Throws InputError with the reason if the channel cannot be used.
-Activations ActivationsOf(const tracks::EmgTrack& track) {
-  const std::vector<Part> parts = PartsOf(track);
-  if (parts.empty()) throw InputError("The channel contains no numbers.");
-  if (!Changes(parts))
-    throw InputError("The channel has the same value throughout. Check the electrode.");
-  Activations all;
-  double longest = 0;
-  for (const Part& part : parts) {
-    longest = std::max(longest, part.Duration());
-    if (part.Duration() >= kShortestEmg) AddPart(part, track.map, &all);
-  }
-  if (all.times.empty())
-    throw InputError(
-        Formatted("No part of the channel lasts %.1f s without a gap of more than %.2f s. The "
-                  "longest part lasts %.2f s. Check the unit of the times.",
-                  kShortestEmg, tracks::PartTrack::kMaxGap, longest));
-  return all;
 }
 
 int MuscleOf(const std::string& key, const std::string& source) {
@@ -150,21 +113,53 @@ void WarnAboutGaps(const tracks::EmgTrack& track, const std::string& name, Measu
 
 }  // namespace
 
-void AddEmg(const tracks::BodyTrack& track, double offset, std::span<const PersonSample> samples,
-            MeasuredEmgs* emgs) {
+double EmgActivations::At(double time, double width) const {
+  const auto begin = std::ranges::lower_bound(times, time - width / 2);
+  const auto end = std::ranges::lower_bound(times, time + width / 2);
+  if (begin == end) return kNone;
+  double sum = 0;
+  for (auto i = begin; i != end; ++i) sum += values[static_cast<std::size_t>(i - times.begin())];
+  return sum / static_cast<double>(end - begin);
+}
+
+EmgActivations ActivationsOf(const tracks::EmgTrack& track) {
+  const std::vector<Part> parts = PartsOf(track);
+  if (parts.empty()) throw InputError("The channel contains no numbers.");
+  if (!Changes(parts))
+    throw InputError("The channel has the same value throughout. Check the electrode.");
+  EmgActivations all;
+  double longest = 0;
+  for (const Part& part : parts) {
+    longest = std::max(longest, part.Duration());
+    if (part.Duration() >= kShortestEmg) AddPart(part, track.map, &all);
+  }
+  if (all.times.empty())
+    throw InputError(
+        Formatted("No part of the channel lasts %.1f s without a gap of more than %.2f s. The "
+                  "longest part lasts %.2f s. Check the unit of the times.",
+                  kShortestEmg, tracks::PartTrack::kMaxGap, longest));
+  return all;
+}
+
+MeasuredEmg DescribeEmg(const tracks::EmgTrack& emg, const std::string& source,
+                        const std::vector<MeasuredEmg>& others) {
+  MeasuredEmg channel;
+  channel.channel = emg.map.channel;
+  channel.source = std::filesystem::path(source).filename().string();
+  channel.hand = emg.map.arm == tracks::ArmSide::kLeft ? 0 : 1;
+  channel.weight = emg.map.weight;
+  for (const std::string& key : emg.map.muscles) channel.muscles.push_back(MuscleOf(key, source));
+  CheckUnique(channel, others);
+  return channel;
+}
+
+void AddEmg(const tracks::BodyTrack& track, std::span<const double> times, MeasuredEmgs* emgs) {
   const std::string source = std::filesystem::path(track.source).filename().string();
   for (const tracks::EmgTrack& emg : track.emg) {
-    MeasuredEmg channel;
-    channel.channel = emg.map.channel;
-    channel.source = source;
-    channel.hand = emg.map.arm == tracks::ArmSide::kLeft ? 0 : 1;
-    channel.weight = emg.map.weight;
-    for (const std::string& key : emg.map.muscles)
-      channel.muscles.push_back(MuscleOf(key, track.source));
-    CheckUnique(channel, emgs->channels);
+    MeasuredEmg channel = DescribeEmg(emg, track.source, emgs->channels);
     const std::string name =
         "The electromyogram " + Quote(channel.channel) + " of " + Printable(source);
-    Activations activations;
+    EmgActivations activations;
     try {
       activations = ActivationsOf(emg);
     } catch (const InputError& error) {
@@ -173,11 +168,11 @@ void AddEmg(const tracks::BodyTrack& track, double offset, std::span<const Perso
     }
     WarnAboutGaps(emg, name, emgs);
     std::size_t known = 0;
-    for (const PersonSample& sample : samples) {
-      channel.measured.push_back(activations.At(sample.recorded - offset, 1 / kSampleRate));
+    for (const double time : times) {
+      channel.measured.push_back(activations.At(time, 1 / kSampleRate));
       known += std::isfinite(channel.measured.back()) ? 1 : 0;
     }
-    channel.share = static_cast<double>(known) / static_cast<double>(samples.size());
+    channel.share = static_cast<double>(known) / static_cast<double>(times.size());
     channel.largest = activations.largest;
     channel.above =
         static_cast<double>(activations.above) / static_cast<double>(activations.times.size());

@@ -35,17 +35,33 @@ struct MeasuredEmgs {
   std::vector<NotEvaluable> gaps;  // channels that cannot be used
 };
 
-// Converts the electromyograms of a file with muscles::EmgActivation and adds the results. `offset`
-// is added to the times of the file [s]. A channel is split where values are missing for more than
-// PartTrack::kMaxGap. Shorter gaps do not split a channel, because the envelope changes more
-// slowly. At both ends of each part, one period of the low-pass (kEmgSettling) is left out. Parts
-// shorter than kShortestEmg are left out, too (D).
+// Describes a channel, without values. Throws InputError, which names the file, if a muscle is
+// unknown or is measured by one of the other channels.
+MeasuredEmg DescribeEmg(const tracks::EmgTrack& emg, const std::string& source,
+                        const std::vector<MeasuredEmg>& others);
+
+// The activations computed from a channel, at its own times, without the ends of its parts.
+struct EmgActivations {
+  std::vector<double> times, values;
+  double largest = 0;     // envelope over mvc
+  std::size_t above = 0;  // number of times with an envelope above mvc
+
+  // Returns the mean activation within `width` around `time`, or NaN outside of a part.
+  double At(double time, double width) const;
+};
+// Throws InputError with the reason if the channel cannot be used (see AddEmg).
+EmgActivations ActivationsOf(const tracks::EmgTrack& track);
+
+// Converts the electromyograms of a file with muscles::EmgActivation and adds the results. `times`
+// are the times of the samples by the clock of the file [s]. A channel is split where values are
+// missing for more than PartTrack::kMaxGap. Shorter gaps do not split a channel, because the
+// envelope changes more slowly. At both ends of each part, one period of the low-pass
+// (kEmgSettling) is left out. Parts shorter than kShortestEmg are left out, too (D).
 //
 // A channel is left out if it is constant, has no part that is long enough, or has too low a
 // sampling rate for its band. `gaps` then contains the reason. Throws InputError, which names the
 // file, if a muscle is unknown or is measured twice.
-void AddEmg(const tracks::BodyTrack& track, double offset, std::span<const PersonSample> samples,
-            MeasuredEmgs* emgs);
+void AddEmg(const tracks::BodyTrack& track, std::span<const double> times, MeasuredEmgs* emgs);
 inline constexpr double kEmgSettling = 1.0 / 6, kShortestEmg = 0.5;  // [s]
 
 // Returns the activations that were measured at a sample.

@@ -13,8 +13,6 @@ constexpr double kLowest = 0.1, kHighest = 1.25, kFarthest = 1.0;
 // Number of heads that are kept during a run: at least four seconds.
 constexpr std::size_t kKept = 256;
 
-double Seconds(std::uint64_t ns) { return 1e-9 * static_cast<double>(ns); }
-
 }  // namespace
 
 void AppendMeasured(const HeadRecord& head, double time, tracks::PartTrack* track) {

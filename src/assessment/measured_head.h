@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "assessment/hand_samples.h"
 #include "assessment/person_setup.h"
@@ -12,6 +13,8 @@
 
 namespace predictor::assessment {
 
+inline double Seconds(std::uint64_t ns) { return 1e-9 * static_cast<double>(ns); }
+
 // Appends a head that was measured at `time` [s]. Leaves out a head that is not later than the
 // previous one.
 void AppendMeasured(const HeadRecord& head, double time, tracks::PartTrack* track);
@@ -19,6 +22,10 @@ void AppendMeasured(const HeadRecord& head, double time, tracks::PartTrack* trac
 // Returns whether a head or an elbow of this person can be at `p_W` [m]. Wrong units, frames and
 // markers give impossible positions.
 bool IsPossible(const PersonSetup& setup, const Vector3& p_W);
+
+// A share of the person's height (design choice). An elbow that is farther from its handle shows a
+// wrong frame, or that left and right are exchanged.
+inline constexpr double kElbowToHandle = 0.4;
 
 // Counts the positions of a measured part of the body.
 struct PositionCount {

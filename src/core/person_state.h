@@ -27,6 +27,19 @@ enum class HeadSource : std::uint8_t {
 };
 inline constexpr std::array kHeadSourceNames = {"modelled", "measured", "impossible"};
 
+// Measurements that other systems send during the run (core/stream_sample.h).
+enum class PersonInput : std::uint8_t { kLeftElbow, kRightElbow, kLeftEmg, kRightEmg, kHeartRate };
+inline constexpr std::array kPersonInputNames = {"left_elbow", "right_elbow", "left_emg",
+                                                 "right_emg", "heart_rate"};
+inline constexpr std::size_t kPersonInputs = kPersonInputNames.size();
+enum class InputStatus : std::uint8_t {
+  kNone,        // no stream measures it
+  kMeasured,    // by a stream
+  kMissing,     // a stream should measure it, but there is no present value
+  kImpossible,  // it is not used, because it cannot belong to this person
+};
+inline constexpr std::array kInputStatusNames = {"none", "measured", "missing", "impossible"};
+
 // Points of the body, for drawing. Most are joints. The points of the eyes and of the head are at
 // their centres. The point of the hand is at the knuckles, and the point of the toes is at the
 // front of the foot, on the ground.
@@ -233,6 +246,12 @@ struct PartState {
   float load_over_range = kUnknown;
 };
 
+struct InputState {
+  InputStatus status = InputStatus::kNone;
+  std::array<std::uint8_t, 3> reserved = {};
+  float last = kUnknown;  // run time of the last value [s]; unknown: there was none
+};
+
 // Times are simulated times since RUN began [s]. Loads and scores are older than the points by the
 // evaluator's delay, because accelerations need later samples.
 struct PersonState {
@@ -249,6 +268,8 @@ struct PersonState {
   float sampled_reached = kUnknown;  // share of the possible people who reach both handles
   HeadSource head = HeadSource::kModelled;  // of the points
   std::array<std::uint8_t, 3> reserved = {};
+  float heart_rate = kUnknown;  // newest measured value [1/min]
+  std::array<InputState, kPersonInputs> inputs;
   std::array<std::array<float, 3>, kBodyPoints> points = {};  // in W [m]; see status
   std::array<PartState, kBodyParts> parts;
   std::array<GaugeState, kPersonGauges> gauges;
@@ -277,6 +298,16 @@ inline constexpr auto kWarningNames = [] {
   for (std::size_t i = 0; i < kPersonWarnings; ++i) names[i] = kPersonWarningRows[i].name;
   return names;
 }();
+
+template <class V, class S>
+void VisitInputs(V& v, S& s) {
+  for (std::size_t i = 0; i < kPersonInputs; ++i)
+    v.Group(kPersonInputNames[i], "", [&, input = &s.inputs[i]](V& in) {
+      in.Word("status", "whether it is measured", kInputStatusNames,
+              static_cast<std::size_t>(input->status));
+      in.Number("last", "s", "time of the last value; null: there was none", input->last);
+    });
+}
 
 template <class V, class S>
 void VisitParts(V& v, S& s) {
@@ -332,6 +363,9 @@ void VisitPerson(V& v, S& s) {
          static_cast<std::size_t>(s.status));
   v.Word("head", "origin of the head of the points; impossible: modelled despite a measurement",
          kHeadSourceNames, static_cast<std::size_t>(s.head));
+  v.Number("heart_rate", "1/min", "newest value that a stream measured", s.heart_rate);
+  v.Group("inputs", "measurements of other systems",
+          [&](V& in) { person_rows::VisitInputs(in, s); });
   v.Flag("reached", "both hands reach their handles", s.reached);
   v.Number("miss", "m", "largest distance between a hand and its handle", s.miss);
   v.Number("sampled_reached", "", "share of the possible people who reach both", s.sampled_reached);

@@ -78,5 +78,6 @@ template class Shared<RunMailbox>;
 template class Shared<StopMailbox>;
 template class Shared<WatchdogMailbox>;
 template class Shared<EvaluationBoard>;
+template class Shared<StreamBoard>;
 
 }  // namespace predictor

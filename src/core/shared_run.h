@@ -10,6 +10,7 @@
 #include "core/record.h"
 #include "core/ring.h"
 #include "core/run_input.h"
+#include "core/stream_sample.h"
 
 namespace predictor {
 
@@ -67,6 +68,12 @@ struct EvaluationBoard {
   RingStorage<PersonState, kPersonRing> states;
 };
 
+// The process that receives the streams of other systems writes this board. The run's recorder and
+// the evaluator read it and do not trust its content.
+struct StreamBoard {
+  StreamRing samples;
+};
+
 // A piece of shared memory that contains one object of type T. The memory has no name. Processes
 // pass its descriptor to one another.
 template <class T>
@@ -97,5 +104,6 @@ extern template class Shared<RunMailbox>;
 extern template class Shared<StopMailbox>;
 extern template class Shared<WatchdogMailbox>;
 extern template class Shared<EvaluationBoard>;
+extern template class Shared<StreamBoard>;
 
 }  // namespace predictor

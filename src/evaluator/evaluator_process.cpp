@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "assessment/live_person.h"
 #include "core/error.h"
@@ -26,27 +28,46 @@ bool WaitAWhile() {
 
 class Evaluator {
  public:
-  // `heads` may be null.
+  // `heads` and `samples` may be null.
   Evaluator(const Scenario& scenario, const RunBoard& board, const HeadRing* heads,
+            const StreamRing* samples, std::span<const tracks::StreamDescription> streams,
             EvaluationBoard* out)
-      : person_(scenario, {}), records_(&board.records), reader_(board.records), out_(out) {
+      : person_(scenario, {}, streams),
+        records_(&board.records),
+        reader_(board.records),
+        out_(out) {
     if (heads) heads_.emplace(*heads);
+    if (samples) samples_.emplace(*samples);
   }
 
-  // A tick whose head may still arrive stays in the ring, so later calls evaluate it.
+  // A tick whose head or sample may still arrive stays in the ring, so later calls evaluate it.
   void Look() {
     while (!failed_) {
       TickRecord record;
       if (!next_ && reader_.Next(&record)) next_ = record;
       if (!next_) return;
       TakeHeads();
-      if (heads_ && person_.head().IsAwaited(next_->wall_ns, NewestTick())) return;
+      TakeSamples();
+      if (IsAwaited(next_->wall_ns, NewestTick())) return;
       if (Add(*next_)) out_->states.Publish(person_.state());
       next_.reset();
     }
   }
 
  private:
+  bool IsAwaited(std::uint64_t tick_ns, std::uint64_t newest_ns) {
+    return (heads_ && person_.head().IsAwaited(tick_ns, newest_ns)) ||
+           (samples_ && person_.streams().IsAwaited(tick_ns, newest_ns));
+  }
+
+  void TakeSamples() {
+    StreamSample sample;
+    for (std::size_t k = 0; samples_ && k < kStreamRing && samples_->Next(&sample); ++k)
+      person_.streams().Take(sample, NewestTick());
+    for (const std::string& problem : person_.streams().TakeProblems())
+      SendLine(kControlDescriptor, {{"say", "A measurement is not used: " + problem}}, false);
+  }
+
   void TakeHeads() {
     HeadRecord head;
     for (std::size_t k = 0; heads_ && k < kHeadRing && heads_->Next(&head); ++k)
@@ -77,14 +98,19 @@ class Evaluator {
   const RecordRing* records_;
   RingReader<TickRecord, kRecordRing> reader_;
   std::optional<RingReader<HeadRecord, kHeadRing>> heads_;
+  std::optional<RingReader<StreamSample, kStreamRing>> samples_;
   std::optional<TickRecord> next_;  // the tick to be evaluated next
   EvaluationBoard* out_;
   bool failed_ = false;
 };
 
-Json StartLine(const Scenario& scenario, bool heads) {
+Json StartLine(const Scenario& scenario, bool heads, bool samples,
+               const std::vector<tracks::StreamDescription>& streams) {
   Json line = RunLine(scenario, Vector3::Zero());
   line["heads"] = heads;
+  line["samples"] = samples;
+  line["streams"] = Json::array();
+  for (const tracks::StreamDescription& stream : streams) line["streams"].push_back(TextOf(stream));
   return line;
 }
 
@@ -95,7 +121,12 @@ void Serve(const Json& start) {
   Shared<EvaluationBoard> states(kMailboxDescriptor, true);
   std::optional<const Shared<RunMailbox>> mailbox;
   if (start["heads"]) mailbox.emplace(kReadDescriptor, false);
-  Evaluator evaluator(run.scenario, *run.board, mailbox ? &(**mailbox).heads : nullptr, &*states);
+  std::optional<const Shared<StreamBoard>> samples;
+  if (start["samples"]) samples.emplace(kStreamDescriptor, false);
+  std::vector<tracks::StreamDescription> streams;
+  for (const Json& text : start["streams"]) streams.push_back(tracks::ParseStream(text));
+  Evaluator evaluator(run.scenario, *run.board, mailbox ? &(**mailbox).heads : nullptr,
+                      samples ? &(**samples).samples : nullptr, streams, &*states);
   GiveUpRights(start, "The evaluator");
   SendLine(kControlDescriptor, {{"ready", "judges"}}, false);
   while (WaitAWhile()) evaluator.Look();
@@ -105,15 +136,19 @@ void Serve(const Json& start) {
 
 EvaluatorProcess::EvaluatorProcess(const Scenario& scenario, const Shared<RunBoard>& board,
                                    const Shared<EvaluationBoard>& states,
-                                   const Shared<RunMailbox>* mailbox, Notify show)
+                                   const Shared<RunMailbox>* mailbox,
+                                   const Shared<StreamBoard>* streams,
+                                   const std::vector<tracks::StreamDescription>& described,
+                                   Notify show)
     : process_({.name = "The evaluator",
                 .subcommand = kEvaluatorSubcommand,
-                .start = StartLine(scenario, mailbox != nullptr),
+                .start = StartLine(scenario, mailbox != nullptr, streams != nullptr, described),
                 .board = board.descriptor(),
                 .mailbox = states.descriptor(),
                 .notify = std::move(show),
                 .hear = [](const Json&) {},
-                .reads = mailbox ? mailbox->read_only_descriptor() : -1}) {}
+                .reads = mailbox ? mailbox->read_only_descriptor() : -1,
+                .streams = streams ? streams->read_only_descriptor() : -1}) {}
 
 int EvaluatorMain() { return ChildMain("evaluator", Serve); }
 

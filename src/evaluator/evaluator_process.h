@@ -3,10 +3,12 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "core/shared_run.h"
 #include "process/supervised_process.h"
 #include "scenario/scenario.h"
+#include "tracks/stream_track.h"
 
 namespace predictor::evaluator {
 
@@ -24,12 +26,15 @@ class EvaluatorProcess {
   // the run's threads, and the run never waits for the evaluator. If the evaluator ends
   // unexpectedly, a message reports this, and the evaluator is restarted. Damage and fatigue then
   // start from zero again. The caller continues to own the descriptors of `board`, `states` and
-  // `mailbox`. The evaluator reads the measured heads in `mailbox`, which is null if no head of
-  // this person can be measured, for instance in a replay. Throws InputError if the body or the
-  // stance is missing or impossible. Throws std::runtime_error if no process can be started.
+  // `mailbox` and `streams`. The evaluator reads the measured heads in `mailbox`, which is null if
+  // no head of this person can be measured, for instance in a replay, and the samples of `streams`,
+  // which is null if no other system measures. `described` are these streams. Throws InputError if
+  // the body or the stance is missing or impossible. Throws std::runtime_error if no process can be
+  // started.
   EvaluatorProcess(const Scenario& scenario, const Shared<RunBoard>& board,
                    const Shared<EvaluationBoard>& states, const Shared<RunMailbox>* mailbox,
-                   Notify show);
+                   const Shared<StreamBoard>* streams,
+                   const std::vector<tracks::StreamDescription>& described, Notify show);
   int pid() const { return process_.pid(); }  // 0 while no process is running
 
  private:

@@ -8,12 +8,14 @@
 namespace predictor {
 
 // The file descriptors that a process alongside the run inherits. Each kind of process may write
-// only into its own mailbox. The last descriptor is for reading the memory of another such process.
+// only into its own mailbox. The last two descriptors are for reading the memory of other such
+// processes.
 enum : int {
   kBoardDescriptor = 3,
   kMailboxDescriptor = 4,
   kControlDescriptor = 5,
-  kReadDescriptor = 6
+  kReadDescriptor = 6,
+  kStreamDescriptor = 7
 };
 
 // Returns the first line that is sent to every process alongside the run. The line contains the

@@ -64,12 +64,16 @@ void Prepare(const Preparation& may) {
   EnterPreparation(then);
 }
 
-void GiveUpRights(const Json& start, const std::string& who) {
+void GiveUpRoot(const Json& start) {
   if (geteuid() == 0 && (setgroups(0, nullptr) != 0 || setresgid(kNobody, kNobody, kNobody) != 0 ||
                          setresuid(kNobody, kNobody, kNobody) != 0))
     throw std::runtime_error("The process cannot give up its root privileges.");
   Limit(RLIMIT_FSIZE, 0);
   DieWithParent(start);
+}
+
+void GiveUpRights(const Json& start, const std::string& who) {
+  GiveUpRoot(start);
   if (kSanitized) return;
   Limit(RLIMIT_NPROC, 0);
   const std::string missing = EnterSandbox();

@@ -23,6 +23,12 @@ int ChildMain(const char* name, const std::function<void(const Json& start)>& se
 // that this system lacks.
 void Prepare(const Preparation& may);
 
+// Gives up the rights of root, continues as the user `nobody`, and forbids writing files. The
+// process ends when the run ends, unless kOutlivesTheRun is set. Throws std::runtime_error if the
+// rights cannot be given up. A process that cannot enter the sandbox uses this function instead of
+// GiveUpRights.
+void GiveUpRoot(const Json& start);
+
 // Call this function when everything has been read and the port is open. After this call, the
 // process cannot open files, start processes, make connections, or affect other processes. If the
 // user was root, the process continues as the user `nobody`. The process ends when the run ends,

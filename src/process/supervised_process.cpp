@@ -64,15 +64,16 @@ std::vector<std::string> Environment() {
   std::vector<std::string> variables;
   // LD_PRELOAD is passed on, because a library that replaces the clocks
   // (tests/support/slow_clock.cpp) must do so in all processes.
-  for (const char* name : {"PREDICTOR_PACKAGE_PATH", "LANG", "LC_ALL", "LD_PRELOAD",
-                           "PREDICTOR_REAL_TIME", "ASAN_OPTIONS", "TSAN_OPTIONS", "UBSAN_OPTIONS"})
+  for (const char* name :
+       {"PREDICTOR_PACKAGE_PATH", "LANG", "LC_ALL", "LD_PRELOAD", "PREDICTOR_REAL_TIME",
+        "LSLAPICFG", "ASAN_OPTIONS", "TSAN_OPTIONS", "UBSAN_OPTIONS"})
     if (const char* value = std::getenv(name)) variables.push_back(std::string(name) + "=" + value);
   return variables;
 }
 
 // Starts this program again. The process inherits these descriptors, numbered from kBoardDescriptor
 // (a negative one is omitted). Throws std::runtime_error.
-pid_t Spawn(std::string subcommand, const std::array<int, 4>& descriptors) {
+pid_t Spawn(std::string subcommand, const std::array<int, 5>& descriptors) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
@@ -88,7 +89,7 @@ pid_t Spawn(std::string subcommand, const std::array<int, 4>& descriptors) {
     aside.emplace_back(fcntl(descriptors[i], F_DUPFD_CLOEXEC, kSafeDescriptor));
     posix_spawn_file_actions_adddup2(&actions, aside.back().get(), child);
   }
-  posix_spawn_file_actions_addclosefrom_np(&actions, kReadDescriptor + 1);
+  posix_spawn_file_actions_addclosefrom_np(&actions, kStreamDescriptor + 1);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t none;
@@ -187,8 +188,8 @@ void SupervisedProcess::Impl::Start() {
     const std::lock_guard lock(mutex);
     start = setup.start;
   }
-  const pid_t child =
-      Spawn(setup.subcommand, {setup.board, setup.mailbox, theirs.get(), setup.reads});
+  const pid_t child = Spawn(setup.subcommand,
+                            {setup.board, setup.mailbox, theirs.get(), setup.reads, setup.streams});
   SendLine(ours.get(), start, true);
   heartbeat = {};
   silent = false;

@@ -35,7 +35,8 @@ struct ChildSetup {
   const std::atomic<std::uint32_t>* beats = nullptr;
   std::string without = "the run continues";  // describes the state of the run while there is no
                                               // such process
-  int reads = -1;  // descriptor of another process's memory, for reading; not owned; -1: none
+  int reads = -1;    // descriptor of another process's memory, for reading; not owned; -1: none
+  int streams = -1;  // likewise, of a StreamBoard
 };
 
 class SupervisedProcess {

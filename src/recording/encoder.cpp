@@ -9,6 +9,7 @@
 #include "core/person_json.h"
 #include "recording/cdr.h"
 #include "recording/head_stream.h"
+#include "recording/sample_stream.h"
 
 namespace predictor::recording {
 namespace {
@@ -85,6 +86,8 @@ Encoder::Encoder(const RecordingHeader& header, std::vector<JsonChannel> scene)
       scene_(std::move(scene)),
       person_channel_(ChannelOf(scene_, kPersonTopic)),
       head_channel_(ChannelOf(scene_, kHeadTopic)),
+      streams_channel_(ChannelOf(scene_, kStreamsTopic)),
+      samples_channel_(ChannelOf(scene_, kSamplesTopic)),
       now_ns_(start_ns_) {}
 
 // Uses the clock time if the record contains one, and otherwise (in virtual time) the number of the
@@ -157,6 +160,21 @@ void Encoder::AddHead(const HeadRecord& head, std::uint64_t tick) {
   const std::uint64_t time = start_ns_ + (head.wall_ns - first_wall_ns_);
   if (time <= now_ns_)
     chunk_.Add(head_channel_, static_cast<std::uint32_t>(tick), time, HeadJson(head));
+}
+
+void Encoder::AddStream(std::size_t stream, const std::string& description, std::uint64_t tick) {
+  if (streams_channel_ == 0) return;
+  chunk_.Add(streams_channel_, static_cast<std::uint32_t>(tick), now_ns_,
+             DescriptionJson(stream, description));
+}
+
+void Encoder::AddSamples(std::span<const StreamSample> samples, std::uint64_t tick) {
+  if (samples_channel_ == 0 || first_wall_ns_ == 0) return;
+  while (!samples.empty() && samples.front().wall_ns < first_wall_ns_) samples = samples.subspan(1);
+  if (samples.empty()) return;
+  const std::uint64_t time = start_ns_ + (samples.front().wall_ns - first_wall_ns_);
+  if (time <= now_ns_)
+    chunk_.Add(samples_channel_, static_cast<std::uint32_t>(tick), time, SamplesJson(samples));
 }
 
 void Encoder::AddSnapshot(std::uint64_t tick, std::span<const std::byte> data) {

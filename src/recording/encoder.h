@@ -10,6 +10,7 @@
 
 #include "core/head_record.h"
 #include "core/person_state.h"
+#include "core/stream_sample.h"
 #include "core/tick_fields.h"
 #include "recording/chunk.h"
 #include "recording/header.h"
@@ -45,6 +46,13 @@ class Encoder {
   // before the first tick or after the newest one is left out.
   void AddHead(const HeadRecord& head, std::uint64_t tick);
 
+  // Adds the description of a stream, a JSON object, at the newest tick, if the recording has a
+  // topic for it.
+  void AddStream(std::size_t stream, const std::string& description, std::uint64_t tick);
+  // Adds successive samples of one stream likewise. Samples from before the first tick are left
+  // out, and so are all samples if the first one is later than the newest tick.
+  void AddSamples(std::span<const StreamSample> samples, std::uint64_t tick);
+
   // Returns whether a chunk should be taken.
   bool Due() const;
   bool empty() const { return chunk_.empty(); }
@@ -59,7 +67,7 @@ class Encoder {
   double dt_;
   std::uint64_t start_ns_;
   std::vector<JsonChannel> scene_;
-  std::uint16_t person_channel_, head_channel_;  // 0: none
+  std::uint16_t person_channel_, head_channel_, streams_channel_, samples_channel_;  // 0: none
   RunEvents run_events_;
   ChunkBuilder chunk_;
   std::uint64_t first_wall_ns_ = 0;

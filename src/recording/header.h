@@ -51,6 +51,20 @@ JsonChannel PersonChannel();
 // second.
 inline constexpr const char* kHeadTopic = "/person/head";
 JsonChannel HeadChannel();
+// The topics of the descriptions and the samples of streams that other systems sent
+// (recording/sample_stream.h).
+inline constexpr const char* kStreamsTopic = "/person/streams";
+JsonChannel StreamsChannel();
+inline constexpr const char* kSamplesTopic = "/person/samples";
+JsonChannel SamplesChannel();
+
+// A stream that was recorded during the run.
+struct RecordedStream {
+  std::string description;     // JSON object; the reader does not check its content
+  std::size_t channels = 0;    // 0: no samples
+  std::vector<double> times;   // since the start of the recording [s]
+  std::vector<double> values;  // `channels` values for each time; NaN: missing
+};
 
 // An event, for example a marker, lost ticks or a stop.
 struct RecordingEvent {

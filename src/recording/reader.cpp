@@ -10,6 +10,7 @@
 #include "recording/input.h"
 #include "recording/opening.h"
 #include "recording/preamble.h"
+#include "recording/sample_stream.h"
 
 namespace predictor {
 
@@ -25,8 +26,10 @@ namespace {
 // events as this limit, and further events are only counted.
 constexpr std::size_t kMaxLoggedEvents = 200'000;
 constexpr std::size_t kMaxEventBytes = 64U << 20U;
-constexpr std::size_t kLongestEvent = 64 * 1024;  // [bytes]
-constexpr std::size_t kLongestHead = 4 * 1024;    // [bytes]
+constexpr std::size_t kLongestEvent = 64 * 1024;     // [bytes]
+constexpr std::size_t kLongestHead = 4 * 1024;       // [bytes]
+constexpr std::size_t kLongestSamples = 256 * 1024;  // [bytes]
+constexpr std::size_t kMaxStreamValues = 1U << 26U;  // of all streams together
 constexpr std::size_t kMaxSnapshots = 1'000'000;
 constexpr std::size_t kMaxHeads = 1'000'000;      // more than four hours
 constexpr std::uint64_t kReadAtOnce = 1U << 20U;  // [bytes]
@@ -51,6 +54,10 @@ struct RecordingReader::Impl {
   void FindOthersIn(std::size_t chunk);
   void TakeEvent(std::size_t chunk, const Message& message);
   void TakeHead(std::size_t chunk, const Message& message, std::vector<RecordedHead>* heads) const;
+  void TakeStream(std::size_t chunk, const Message& message, std::vector<RecordedStream>* s) const;
+  void TakeSamples(std::size_t chunk, const Message& message, std::vector<RecordedStream>* s) const;
+  template <class Take>
+  void ForEachOn(std::uint16_t channel, const Take& take) const;
   void CheckIndexes(const mcap::ChunkIndex& index) const;
 
   InputFile file;
@@ -224,6 +231,46 @@ void RecordingReader::Impl::TakeHead(std::size_t i, const Message& message,
   heads->push_back(head);
 }
 
+void RecordingReader::Impl::TakeStream(std::size_t i, const Message& message,
+                                       std::vector<RecordedStream>* streams) const {
+  std::size_t stream = 0;
+  std::string description;
+  if (message.data.size() > kLongestSamples ||
+      !recording::ParseDescription(message.data, &stream, &description))
+    file.Fail(chunks[i].offset, "This chunk contains an invalid description of a stream.");
+  if (streams->size() <= stream) streams->resize(stream + 1);
+  (*streams)[stream].description = std::move(description);
+}
+
+void RecordingReader::Impl::TakeSamples(std::size_t i, const Message& message,
+                                        std::vector<RecordedStream>* streams) const {
+  const auto start = static_cast<std::uint64_t>(opening.header.start_unix_ns);
+  const std::size_t stream =
+      message.data.size() > kLongestSamples ? kMaxStreams : recording::StreamOf(message.data);
+  if (message.time < start || stream >= streams->size() ||
+      !recording::ParseSamples(message.data, stream,
+                               1e-9 * static_cast<double>(message.time - start),
+                               &(*streams)[stream]))
+    file.Fail(chunks[i].offset, "This chunk contains invalid samples of a stream.");
+  std::size_t values = 0;
+  for (const RecordedStream& one : *streams) values += one.values.size();
+  if (values > kMaxStreamValues)
+    file.Fail(chunks[i].offset, "The recording contains too many samples of streams.");
+}
+
+// Calls take(chunk, message) for each message of the channel.
+template <class Take>
+void RecordingReader::Impl::ForEachOn(std::uint16_t channel, const Take& take) const {
+  if (channel == 0) return;  // also spares a truncated recording from being read completely
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
+    if (complete && !chunks[i].indexes.contains(channel)) continue;
+    const std::string bytes = ReadChunk(file, chunks[i]);
+    std::string_view from = bytes;
+    for (Message message; TakeMessage(&from, &message);)
+      if (message.channel == channel) take(i, message);
+  }
+}
+
 void RecordingReader::Impl::FindOthersIn(std::size_t i) {
   const std::string bytes = ReadChunk(file, chunks[i]);
   std::string_view from = bytes;
@@ -383,18 +430,21 @@ std::vector<RecordingEvent> RecordingReader::gaps() {
 
 std::vector<RecordedHead> RecordingReader::ReadHeads() const {
   const Impl& r = *impl_;
-  const std::uint16_t channel = recording::ChannelOf(r.opening.scene, kHeadTopic);
-  if (channel == 0) return {};  // also spares a truncated recording from being read completely
   std::vector<RecordedHead> heads;
-  for (std::size_t i = 0; i < r.chunks.size(); ++i) {
-    if (r.complete && !r.chunks[i].indexes.contains(channel)) continue;
-    const std::string bytes = ReadChunk(r.file, r.chunks[i]);
-    std::string_view from = bytes;
-    for (Message message; TakeMessage(&from, &message);)
-      if (message.channel == channel) r.TakeHead(i, message, &heads);
-  }
+  r.ForEachOn(recording::ChannelOf(r.opening.scene, kHeadTopic),
+              [&](std::size_t i, const Message& message) { r.TakeHead(i, message, &heads); });
   std::ranges::stable_sort(heads, {}, &RecordedHead::time);
   return heads;
+}
+
+std::vector<RecordedStream> RecordingReader::ReadStreams() const {
+  const Impl& r = *impl_;
+  std::vector<RecordedStream> streams;
+  r.ForEachOn(recording::ChannelOf(r.opening.scene, kStreamsTopic),
+              [&](std::size_t i, const Message& message) { r.TakeStream(i, message, &streams); });
+  r.ForEachOn(recording::ChannelOf(r.opening.scene, kSamplesTopic),
+              [&](std::size_t i, const Message& message) { r.TakeSamples(i, message, &streams); });
+  return streams;
 }
 
 void RecordingReader::Check() {

@@ -1,5 +1,6 @@
 #include "recording/recorder.h"
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <condition_variable>
@@ -14,6 +15,7 @@
 #include "core/contained_thread.h"
 #include "recording/encoder.h"
 #include "recording/mcap_file.h"
+#include "recording/sample_stream.h"
 
 namespace predictor {
 namespace {
@@ -26,6 +28,8 @@ constexpr milliseconds kPause{10};         // pause between polls of the ring
 constexpr milliseconds kChunkPeriod{500};  // longest time that a chunk waits for more data
 // interval between two events about lost ticks [ns]
 constexpr std::uint64_t kLossPeriod = 1'000'000'000;
+constexpr std::uint64_t kBatchTime =
+    100'000'000;  // for which samples of a stream are collected [ns]
 
 constexpr int kThrown = -1;  // means an exception where an errno value is expected
 
@@ -135,6 +139,7 @@ struct Recorder::Impl {
         disk(options) {
     if (options.person) persons.emplace(options.person->states);
     if (options.heads) heads.emplace(*options.heads);
+    if (options.samples) samples.emplace(*options.samples);
     free_bytes = file.FreeBytes();
     encodes = ContainedThread(
         "record encode", [this] { Encode(); }, [this](const char* why) { EncodingFailed(why); });
@@ -154,6 +159,8 @@ struct Recorder::Impl {
   void TakeMarks();
   void TakePersons(bool all);
   void TakeHeads(bool all);
+  void TakeSamples(bool all);
+  void Collect(const StreamSample& sample);
   bool Pass(bool all);
 
   // ---- writing ----------------------------------------------------------------------------------
@@ -176,6 +183,7 @@ struct Recorder::Impl {
   RingReader<TickRecord, kRecordRing> reader;
   std::optional<RingReader<PersonState, kPersonRing>> persons;
   std::optional<RingReader<HeadRecord, kHeadRing>> heads;
+  std::optional<RingReader<StreamSample, kStreamRing>> samples;
   SnapshotBox snapshot;
   recording::McapFile file;
   recording::Encoder encoder;
@@ -186,6 +194,9 @@ struct Recorder::Impl {
   std::uint64_t newest_ns = 0;         // its monotonic clock
   std::optional<PersonState> waiting;  // the person's next state
   std::optional<HeadRecord> next_head;
+  std::optional<StreamSample> next_sample;
+  std::array<std::vector<StreamSample>, kMaxStreams> batches;  // samples for the next messages
+  bool described = false;                 // whether the streams' descriptions are in the recording
   std::uint64_t seen = 0;                 // number of lost ticks noticed so far
   std::uint64_t noted = 0;                // number of them that an event in the file reports
   std::uint64_t holes = 0;                // gaps covered by one event
@@ -221,6 +232,7 @@ void Recorder::Impl::Encode() {
     TakeMarks();
     TakePersons(last);
     TakeHeads(last);
+    TakeSamples(last);
     snapshot.MoveTo(&encoder);
     if (wants_snapshot && snapshot.Want()) wants_snapshot = false;
     if (!Pass(last)) break;
@@ -315,6 +327,40 @@ void Recorder::Impl::TakeHeads(bool all) {
     if (is_credible) encoder.AddHead(*next_head, newest);
     next_head.reset();
   }
+}
+
+// Samples wait as heads do. The samples of a stream are collected, because a message for each
+// sample would take several times as much space.
+void Recorder::Impl::TakeSamples(bool all) {
+  if (!samples || newest_ns == 0) return;
+  if (!std::exchange(described, true))
+    for (std::size_t i = 0; i < options.streams.size(); ++i)
+      encoder.AddStream(i, options.streams[i], newest);
+  for (std::size_t k = 0; k < kStreamRing; ++k) {
+    StreamSample sample;
+    if (!next_sample && samples->Next(&sample)) next_sample = sample;
+    if (!next_sample) break;
+    const bool is_credible = IsCredible(*next_sample, newest_ns);
+    if (is_credible && next_sample->wall_ns > newest_ns && !all) break;
+    if (is_credible) Collect(*next_sample);
+    next_sample.reset();
+  }
+  for (std::vector<StreamSample>& batch : batches)
+    if (!batch.empty() && (all || newest_ns - batch.front().wall_ns > kBatchTime))
+      encoder.AddSamples(std::exchange(batch, {}), newest);
+}
+
+void Recorder::Impl::Collect(const StreamSample& sample) {
+  if (sample.stream >= options.streams.size()) return;
+  std::vector<StreamSample>& batch = batches[sample.stream];
+  // A message has one number of channels, one offset, and ascending times.
+  const bool begins = !batch.empty() && (sample.count != batch.back().count ||
+                                         sample.clock_offset != batch.back().clock_offset ||
+                                         sample.wall_ns <= batch.back().wall_ns ||
+                                         sample.wall_ns - batch.front().wall_ns > 10 * kBatchTime);
+  if (begins || batch.size() == recording::kMaxSamplesInMessage)
+    encoder.AddSamples(std::exchange(batch, {}), newest);
+  batch.push_back(sample);
 }
 
 // Passes on the data that are due or, if `all` is true, all data. Returns false if the queue has

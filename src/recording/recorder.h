@@ -33,6 +33,9 @@ struct RecorderOptions : DiskRules {
   const EvaluationBoard* person =
       nullptr;                      // source of the person's states to record; null: none; borrowed
   const HeadRing* heads = nullptr;  // source of the measured heads to record; null: none; borrowed
+  const StreamRing* samples = nullptr;  // source of the samples of other systems; null: none;
+                                        // borrowed
+  std::vector<std::string> streams;     // descriptions of their streams, each a JSON object
 };
 
 // The first thread reads the ring, encodes and compresses. The second thread writes, and the third

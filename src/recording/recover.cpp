@@ -58,6 +58,8 @@ class Recovery {
         channels_(kEventChannel + opening.scene.size()),
         states_(ChannelOf(opening.scene, kPersonTopic)),
         heads_(ChannelOf(opening.scene, kHeadTopic)),
+        streams_(ChannelOf(opening.scene, kStreamsTopic)),
+        samples_(ChannelOf(opening.scene, kSamplesTopic)),
         person_(person),
         out_(out) {}
 
@@ -142,6 +144,7 @@ class Recovery {
         if (!person_ && IsOfPerson(message)) {
           ++(message.channel == states_  ? report_.left_out_states
              : message.channel == heads_ ? report_.left_out_heads
+             : IsOfStreams(message)      ? report_.left_out_samples
                                          : report_.left_out_markers);
           return;
         }
@@ -151,10 +154,15 @@ class Recovery {
     }
   }
 
-  // Returns whether a message is a state or a head of the person, or an event with a text of a
-  // person or a program. All other messages are derived from the ticks.
+  bool IsOfStreams(const Message& message) const {
+    return message.channel == streams_ || message.channel == samples_;
+  }
+
+  // Returns whether a message is a state, a head or another measurement of the person, or an event
+  // with a text of a person or a program. All other messages are derived from the ticks.
   bool IsOfPerson(const Message& message) const {
-    if (message.channel == states_ || message.channel == heads_) return true;
+    if (message.channel == states_ || message.channel == heads_ || IsOfStreams(message))
+      return true;
     RecordingEvent event;
     return message.channel == kEventChannel && ParseEvent(message.data, &event) &&
            (event.kind == "marker" || event.kind == "event");
@@ -194,8 +202,9 @@ class Recovery {
 
   const InputFile& in_;
   std::size_t channels_;
-  std::uint16_t states_;  // channel of the person's states; 0: none
-  std::uint16_t heads_;   // channel of the measured heads; 0: none
+  std::uint16_t states_;             // channel of the person's states; 0: none
+  std::uint16_t heads_;              // channel of the measured heads; 0: none
+  std::uint16_t streams_, samples_;  // channels of other systems' streams; 0: none
   bool person_;
   McapFile* out_;
   RecoverReport report_;

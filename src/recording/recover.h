@@ -19,9 +19,9 @@ struct RecoverReport {
   std::uint64_t lost_ticks = 0;  // ticks lost between kept ones; the number after the last kept one
                                  // is unknown
   std::uint64_t snapshots = 0, events = 0;  // numbers of those kept
-  std::uint64_t left_out_markers = 0, left_out_states = 0,
-                left_out_heads = 0;  // omitted, see Rewriting
-  std::uint64_t gave_up_at = 0;      // byte at which the search was abandoned; 0: not abandoned
+  std::uint64_t left_out_markers = 0, left_out_states = 0, left_out_heads = 0,
+                left_out_samples = 0;  // omitted, see Rewriting
+  std::uint64_t gave_up_at = 0;        // byte at which the search was abandoned; 0: not abandoned
   std::string preamble;  // sentences about repaired or lost parts of the preamble; empty: none
 
   std::string Text() const;  // Sentences for the user.

@@ -55,6 +55,9 @@ std::vector<std::string> WriteShared(const std::string& in, const std::string& o
     removed.push_back(std::to_string(report.left_out_states) + " states of the person");
   if (report.left_out_heads > 0)
     removed.push_back(std::to_string(report.left_out_heads) + " measured poses of the head");
+  if (report.left_out_samples > 0)
+    removed.push_back(std::to_string(report.left_out_samples) +
+                      " messages of other systems' measurements");
   return removed;
 }
 

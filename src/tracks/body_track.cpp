@@ -50,7 +50,7 @@ class Mapper {
   Mapper(const TrackMap& map, const SeriesFile& file)
       : map_(map), file_(file), X_WF_(PoseFromXyzRpy(map.frame.xyz, map.frame.rpy)) {}
 
-  PartTrack PartOf(const PartMap& part, const char* name) const {
+  PartTrack PartOf(const PartMap& part) const {
     PartTrack track;
     const auto times = TimesOf(part.position.empty() ? MarkerChannels(part.markers[0])
                                                      : ChannelsOf(file_, part.position, kXyz));
@@ -62,15 +62,12 @@ class Mapper {
     else if (!part.front.empty())
       track.q = Triads(part, times);
     Place(part, &track);
-    if (std::ranges::none_of(track.p, [](const Vector3& p) { return p.allFinite(); }))
-      throw InputError(file_.name, std::string("The position of ") + name +
-                                       " is missing at every time. Check the mapping.");
     return track;
   }
 
-  HandTrack HandOf(const HandMap& hand, const char* name) const {
+  HandTrack HandOf(const HandMap& hand) const {
     HandTrack track;
-    track.pose = PartOf(hand, name);
+    track.pose = PartOf(hand);
     track.along_handle = hand.axes == WrenchAxes::kHand;
     track.about = hand.about;
     if (!hand.force.empty()) AddWrench(hand, &track);
@@ -302,18 +299,40 @@ double SignalTrack::At(double time, double width) const {
   return at ? Blend(values, *at) : kMissing;
 }
 
+namespace {
+
+void CheckMeasured(const PartTrack& part, const char* name, const std::string& source) {
+  if (std::ranges::none_of(part.p, [](const Vector3& p) { return p.allFinite(); }))
+    throw InputError(source, std::string("The position of ") + name +
+                                 " is missing at every time. Check the mapping.");
+}
+
+}  // namespace
+
 BodyTrack ApplyMap(const TrackMap& map, const SeriesFile& file) {
+  BodyTrack track = ApplyMapToPart(map, file);
+  if (track.head) CheckMeasured(*track.head, "head", file.name);
+  constexpr std::array kElbows = {"left_elbow", "right_elbow"},
+                       kHandParts = {"left_hand", "right_hand"};
+  for (std::size_t h = 0; h < kHands; ++h) {
+    if (track.elbows[h]) CheckMeasured(*track.elbows[h], kElbows[h], file.name);
+    if (track.hands[h]) CheckMeasured(track.hands[h]->pose, kHandParts[h], file.name);
+  }
+  return track;
+}
+
+BodyTrack ApplyMapToPart(const TrackMap& map, const SeriesFile& file) {
   const Mapper mapper(map, file);
   BodyTrack track;
   track.source = file.name;
   track.clock = map.clock;
   track.offset = map.offset;
   track.warnings = file.warnings;
-  if (map.head) track.head = mapper.PartOf(*map.head, "head");
-  if (map.left_elbow) track.elbows[0] = mapper.PartOf(*map.left_elbow, "left_elbow");
-  if (map.right_elbow) track.elbows[1] = mapper.PartOf(*map.right_elbow, "right_elbow");
-  if (map.left_hand) track.hands[0] = mapper.HandOf(*map.left_hand, "left_hand");
-  if (map.right_hand) track.hands[1] = mapper.HandOf(*map.right_hand, "right_hand");
+  if (map.head) track.head = mapper.PartOf(*map.head);
+  if (map.left_elbow) track.elbows[0] = mapper.PartOf(*map.left_elbow);
+  if (map.right_elbow) track.elbows[1] = mapper.PartOf(*map.right_elbow);
+  if (map.left_hand) track.hands[0] = mapper.HandOf(*map.left_hand);
+  if (map.right_hand) track.hands[1] = mapper.HandOf(*map.right_hand);
   for (const SeriesMap& signal : map.series) track.signals.push_back(mapper.SignalOf(signal));
   for (const EmgMap& emg : map.emg) track.emg.push_back(mapper.EmgOf(emg));
   return track;

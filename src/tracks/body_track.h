@@ -79,6 +79,10 @@ struct BodyTrack {
 // is not a unit quaternion, or a part was never measured.
 BodyTrack ApplyMap(const TrackMap& map, const SeriesFile& file);
 
+// Applies a mapping to a part of a measurement. A part of the body may be missing throughout, and
+// the file may have no times. Otherwise as ApplyMap.
+BodyTrack ApplyMapToPart(const TrackMap& map, const SeriesFile& file);
+
 // Loads a mapping (.yaml) with its file, or a table with named columns (MapOfColumns). Throws
 // InputError.
 BodyTrack LoadBodyTrack(const std::filesystem::path& file);

@@ -78,17 +78,9 @@ void Fields(V& v, EmgMap& s) {
            Above(0, 1e6)));
 }
 
+// The keys that do not depend on the kind of source.
 template <class V>
-void TrackFields(V& v, TrackMap& s) {
-  v("time", s.time,
-    Word("table: the column with the times; \"\": time or timestamp. Bag: received selects the "
-         "times at which the messages were received, instead of their own stamps"));
-  v("time_unit", s.time_unit, Word("\"\": as the header states it, otherwise s"));
-  v("rate", s.rate,
-    Number("Hz", "rate of the rows of a table without times; 0: the table has times",
-           From(0, 1e5)));
-  v("clock", s.clock, Word("what the file's times mean"));
-  v("offset", s.offset, Number("s", "added to the file's times", Within(1e10)));
+void BodyFields(V& v, TrackMap& s) {
   v("frame", s.frame, Part("the file's frame in W"));
   v("unit", s.unit, Word("unit of positions; \"\": as the file states it"));
   v("force_unit", s.force_unit, Word("unit of forces; \"\": as the file states it"));
@@ -100,6 +92,20 @@ void TrackFields(V& v, TrackMap& s) {
   v("right_hand", s.right_hand, Part("the right hand or its handle"));
   v("series", s.series, List(Part("other measured numbers, such as heart rate"), 0, 64));
   v("emg", s.emg, List(Part("raw electromyograms of arm muscles"), 0, 64));
+}
+
+template <class V>
+void TrackFields(V& v, TrackMap& s) {
+  v("time", s.time,
+    Word("table: the column with the times; \"\": time or timestamp. Bag: received selects the "
+         "times at which the messages were received, instead of their own stamps"));
+  v("time_unit", s.time_unit, Word("\"\": as the header states it, otherwise s"));
+  v("rate", s.rate,
+    Number("Hz", "rate of the rows of a table without times; 0: the table has times",
+           From(0, 1e5)));
+  v("clock", s.clock, Word("what the file's times mean"));
+  v("offset", s.offset, Number("s", "added to the file's times", Within(1e10)));
+  BodyFields(v, s);
 }
 
 template <class V>

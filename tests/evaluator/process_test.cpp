@@ -6,6 +6,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <mutex>
@@ -32,8 +34,8 @@ Scenario Box() {
 class EvaluatorProcessTest : public testing::Test {
  protected:
   void Start(const Scenario& scenario) {
-    evaluator_ = std::make_unique<EvaluatorProcess>(scenario, board_, states_, &mailbox_,
-                                                    [this](const std::string& text) {
+    evaluator_ = std::make_unique<EvaluatorProcess>(scenario, board_, states_, &mailbox_, &streams_,
+                                                    Described(), [this](const std::string& text) {
                                                       const std::lock_guard lock(mutex_);
                                                       reported_ += text + "\n";
                                                     });
@@ -46,6 +48,23 @@ class EvaluatorProcessTest : public testing::Test {
     }
   }
   static std::uint64_t WallOf(std::uint64_t tick) { return 5'000'000'000 + 1'000'000 * tick; }
+  static std::vector<tracks::StreamDescription> Described() {
+    tracks::StreamDescription elbow{.name = "elbow", .rate = 100};
+    elbow.channels = {"left_elbow.p.x", "left_elbow.p.y", "left_elbow.p.z"};
+    elbow.units = {"m", "m", "m"};
+    return {elbow, {.name = "watch", .rate = 1, .channels = {"pulse"}, .units = {"1/min"}}};
+  }
+  void Send(std::uint32_t stream, std::uint64_t tick, const std::vector<double>& values) {
+    StreamSample sample{.wall_ns = WallOf(tick), .stream = stream};
+    sample.count = static_cast<std::uint32_t>(values.size());
+    std::ranges::copy(values, sample.values.begin());
+    streams_->samples.Publish(sample);
+  }
+  // The left elbow hangs beside the trunk of the person, outwards from the handle.
+  void SendElbowAt(std::uint64_t tick, double x = 0.75) { Send(0, tick, {x, -0.35, 0.15}); }
+  static const InputState& Of(const PersonState& state, PersonInput input) {
+    return state.inputs[static_cast<std::size_t>(input)];
+  }
   // The person looks down at the handles.
   void MeasureHeadAt(std::uint64_t tick) {
     HeadRecord head;
@@ -81,6 +100,7 @@ class EvaluatorProcessTest : public testing::Test {
   Shared<RunBoard> board_;
   Shared<EvaluationBoard> states_;
   Shared<RunMailbox> mailbox_;
+  Shared<StreamBoard> streams_;
   std::mutex mutex_;
   std::string reported_;
   std::unique_ptr<EvaluatorProcess> evaluator_;
@@ -134,6 +154,62 @@ TEST_F(EvaluatorProcessTest, IgnoresAHeadFromAFarFuture) {
   Run(51, 100);
   ASSERT_TRUE(Becomes([&] { return Newest().tick == 100; }));
   EXPECT_EQ(HeadsOf(80, 100), std::set{HeadSource::kMeasured});
+}
+
+TEST_F(EvaluatorProcessTest, PutsTheElbowWhereAStreamMeasuresIt) {
+  Start(Box());
+  for (std::uint64_t tick = 0; tick <= 300; tick += 10) SendElbowAt(tick);
+  Run(1, 300);
+  ASSERT_TRUE(Becomes([&] { return Newest().tick == 300; }));
+  const PersonState state = Newest();
+  EXPECT_EQ(Of(state, PersonInput::kLeftElbow).status, InputStatus::kMeasured);
+  EXPECT_EQ(Of(state, PersonInput::kRightElbow).status, InputStatus::kNone);
+  const auto& elbow = state.points[static_cast<std::size_t>(BodyPoint::kLeftElbow)];
+  EXPECT_NEAR(elbow[0], 0.75, 0.05);
+  EXPECT_NEAR(elbow[1], -0.35, 0.05);
+  EXPECT_NEAR(elbow[2], 0.15, 0.05);
+}
+
+TEST_F(EvaluatorProcessTest, SaysSinceWhenAStreamIsSilent) {
+  Start(Box());
+  for (std::uint64_t tick = 0; tick <= 100; tick += 10) SendElbowAt(tick);
+  Run(1, 600);
+  ASSERT_TRUE(Becomes([&] { return Newest().tick == 600; }));
+  EXPECT_EQ(Of(Newest(), PersonInput::kLeftElbow).status, InputStatus::kMissing);
+  EXPECT_NEAR(Of(Newest(), PersonInput::kLeftElbow).last, 0.1, 0.02);
+  EXPECT_EQ(Of(Newest(), PersonInput::kHeartRate).status, InputStatus::kMissing);
+  EXPECT_TRUE(std::isnan(Of(Newest(), PersonInput::kHeartRate).last));
+}
+
+TEST_F(EvaluatorProcessTest, ShowsTheHeartRateUntilItIsOld) {
+  Start(Box());
+  Run(1, 100);
+  ASSERT_TRUE(Becomes([&] { return Newest().tick == 100; }));
+  Send(1, 100, {71});
+  Run(101, 1000);
+  ASSERT_TRUE(Becomes([&] { return Newest().tick == 1000; }));
+  EXPECT_EQ(Newest().heart_rate, 71);
+  Run(1001, 5200);
+  ASSERT_TRUE(Becomes([&] { return Newest().tick == 5200; }));
+  EXPECT_TRUE(std::isnan(Newest().heart_rate));
+  EXPECT_EQ(Of(Newest(), PersonInput::kHeartRate).status, InputStatus::kMissing);
+  EXPECT_NEAR(Of(Newest(), PersonInput::kHeartRate).last, 0.1, 0.02);
+}
+
+// Another process wrote the samples, so they may contain anything.
+TEST_F(EvaluatorProcessTest, IgnoresSamplesThatCannotBeTrue) {
+  Start(Box());
+  Send(7, 5, {1});             // unknown stream
+  Send(0, 5, {1, 2});          // wrong number of channels
+  Send(1, 5, {std::nan("")});  // missing
+  Send(1, 6, {INFINITY});      // not a number
+  Send(1, 900'000, {60});      // from a far future
+  for (std::uint64_t tick = 0; tick <= 100; tick += 10) SendElbowAt(tick, 40);  // far away
+  Run(1, 500);
+  ASSERT_TRUE(Becomes([&] { return Newest().tick == 500; }));
+  EXPECT_TRUE(std::isnan(Newest().heart_rate));
+  EXPECT_EQ(Newest().status, PersonStatus::kJudged);
+  EXPECT_LT(Newest().points[static_cast<std::size_t>(BodyPoint::kLeftElbow)][0], 2);
 }
 
 TEST_F(EvaluatorProcessTest, HasNoRightsAndWritesItsStatesOnly) {

@@ -100,11 +100,31 @@ export const kWhyNot: Record<Exclude<PersonState['status'], 'judged'>, string> =
 
 // Describes the origin of the head of the drawn body. An older server does not send this origin.
 export const kHeadWords: Record<PersonState['head'], string> = {
-  measured: 'The headset measures the head.',
+  measured: 'The head is measured.',
   modelled: 'The head is modelled.',
-  impossible: 'The head is modelled, because the headset measures it where this person’s head cannot be: ' +
+  impossible: 'The head is modelled, because it is measured where this person’s head cannot be: ' +
       'register again, or correct operator.stance.',
 };
+
+const kInputWords: Record<keyof PersonState['inputs'], string> = {
+  left_elbow: 'left elbow', right_elbow: 'right elbow', left_emg: 'EMG of the left arm', right_emg: 'EMG of the right arm',
+  heart_rate: 'heart rate',
+};
+
+// Describes what streams of other systems measure, and what is missing since when. Returns an empty
+// list if the run has no streams. An older server does not send the inputs.
+export function inputLines({inputs, heart_rate: rate}: PersonState): {text: string; bad: boolean}[] {
+  return Object.entries(inputs ?? {}).flatMap(([name, {status, last}]): {text: string; bad: boolean}[] => {
+    if (status === 'none') return [];
+    const words = kInputWords[name as keyof PersonState['inputs']];
+    const what = words[0].toUpperCase() + words.slice(1);
+    if (status === 'measured')
+      return [{text: `${what}: measured${name === 'heart_rate' && rate !== null ? `, ${rate.toFixed(0)} per minute` : ''}.`, bad: false}];
+    const since = last === null ? 'since the start' : `since ${last.toFixed(1)} s`;
+    return [{text: status === 'missing' ? `${what}: missing ${since}.` :
+        `${what}: not used ${since}, because it is measured where it cannot be. Check the frame of its mapping.`, bad: true}];
+  });
+}
 
 // Lists the damage and fatigue of the shoulders and elbows of both sides, under the names of the
 // parts in the state.

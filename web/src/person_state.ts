@@ -9,6 +9,8 @@ export interface PersonState {
   since: number | null;  // [s] start of damage and fatigue
   status: 'judged' | 'waiting' | 'no_hand' | 'below_ground';  // whether the person is judged, or why not
   head: 'modelled' | 'measured' | 'impossible';  // origin of the head of the points; impossible: modelled despite a measurement
+  heart_rate: number | null;  // [1/min] newest value that a stream measured
+  inputs: Record<'left_elbow' | 'right_elbow' | 'left_emg' | 'right_emg' | 'heart_rate', {status: 'none' | 'measured' | 'missing' | 'impossible'; last: number | null}>;  // measurements of other systems
   reached: boolean;  // both hands reach their handles
   miss: number | null;  // [m] largest distance between a hand and its handle
   sampled_reached: number | null;  // share of the possible people who reach both

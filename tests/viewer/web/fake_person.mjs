@@ -70,8 +70,9 @@ function gauges(t, lean, wrenches) {
 
 // Returns the message `person` at the run time t [s]. `status` is 'judged', or the reason why
 // nothing is judged. `head` is the origin of the head. `range` is the largest
-// load of the lower back as a share of the range of LiFFT.
-export function personMessage(spec, t, tick, hands, wrenches, status = 'judged', head = 'modelled', range = 0.4) {
+// load of the lower back as a share of the range of LiFFT. `inputs` are the measurements of streams.
+export function personMessage(spec, t, tick, hands, wrenches, status = 'judged', head = 'modelled', range = 0.4,
+                              inputs = {}) {
   const judged = status === 'judged';
   const {points, lean} = pointsOf(spec.viewpoint, hands);
   const known = gauges(t, lean, wrenches);
@@ -80,10 +81,14 @@ export function personMessage(spec, t, tick, hands, wrenches, status = 'judged',
   const elbow = (load, capacity) => ({...part(load, capacity), damage: null, day_share: null});
   const score = (value, level, probability) =>
     (judged ? {score: value, level, probability} : {score: 0, level: 0, probability: null});
+  const input = (name, [state, last] = inputs[name] ?? ['none', null]) => ({status: state, last});
   const warns = judged && known.left_shoulder_use.value > 0.5;
   return {
     type: 'person', tick, run_time: t, load_time: t - 0.1, interval_time: t - 0.2, since: 0, status,
-    head: judged ? head : 'modelled', reached: true, miss: 0, sampled_reached: 1, warnings: warns ? ['left_shoulder'] : [],
+    head: judged ? head : 'modelled', heart_rate: inputs.heart_rate ?? null,
+    inputs: {left_elbow: input('left_elbow'), right_elbow: input('right_elbow'), left_emg: input('left_emg'), right_emg: input('right_emg'),
+             heart_rate: inputs.heart_rate ? {status: 'measured', last: t} : {status: 'none', last: null}},
+    reached: true, miss: 0, sampled_reached: 1, warnings: warns ? ['left_shoulder'] : [],
     points: judged ? points : nothing(points),
     parts: {
       lower_back: {...part(known.lower_back_compression.value / 3400, null), load_over_range: range},

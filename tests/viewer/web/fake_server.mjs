@@ -77,6 +77,7 @@ export class FakeServer {
     this.file = 'made_up'; // the scenario's file
     this.personStatus = 'judged';
     this.personHead = 'modelled';  // origin of the person's head
+    this.personInputs = {};  // what streams measure: heart_rate, and [status, last] of the others
     this.liftRange = 0.4;  // largest load of the lower back as a share of the range of LiFFT
     this.sendingPerson = true;
     this.parameters = [1, 1, 1, 30, 5];
@@ -396,7 +397,7 @@ export class FakeServer {
     const hands = Object.fromEntries(kSides.map((side) => [side, position(this.handlePose(side))]));
     const wrenches = Object.fromEntries(kSides.map((side) => [side, this.wrench(side)]));
     this.broadcast(personMessage(this.scene, this.runTime, this.tick, hands, wrenches, this.personStatus,
-                                 this.personHead, this.liftRange));
+                                 this.personHead, this.liftRange, this.personInputs));
   }
 
   advance(dt) {

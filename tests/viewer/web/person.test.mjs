@@ -68,15 +68,29 @@ test('damage beyond the range of its method is marked', async () => {
   await waitForText(damage, /lower back [\d.e-]+ %, left/);
 });
 
-test('the card states whether the headset measures the head', async () => {
+test('the card states whether the head is measured', async () => {
   const head = page.locator('#person-head');
   await waitForText(head, /^The head is modelled\.$/);
   server.personHead = 'measured';
-  await waitForText(head, /^The headset measures the head\.$/);
+  await waitForText(head, /^The head is measured\.$/);
   server.personHead = 'impossible';
   await waitForText(head, /register again/);
   server.personHead = 'modelled';
   await waitForText(head, /^The head is modelled\.$/);
+});
+
+test('the card states what streams measure, and what is missing since when', async () => {
+  const inputs = page.locator('#person-inputs');
+  await waitForText(inputs, /^$/);
+  server.personInputs = {heart_rate: 72.4, left_elbow: ['measured', 5], right_elbow: ['missing', 12.34], right_emg: ['missing', null]};
+  await waitForText(inputs, /Left elbow: measured\./);
+  const words = await inputs.innerText();
+  for (const line of ['Heart rate: measured, 72 per minute.', 'Right elbow: missing since 12.3 s.',
+                      'EMG of the right arm: missing since the start.'])
+    assert.ok(words.includes(line), words);
+  assert.ok(!words.includes('left arm'), words);
+  server.personInputs = {};
+  await waitForText(inputs, /^$/);
 });
 
 test('a warning appears while it is active in the evaluation', async () => {

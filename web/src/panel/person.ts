@@ -2,7 +2,7 @@
 // fatigue and warnings.
 import {h, setAttribute, setText} from '../dom';
 import {loadColor} from '../load';
-import {kArmParts, kHeadWords, kWhyNot} from '../person';
+import {inputLines, kArmParts, kHeadWords, kWhyNot} from '../person';
 import {kPersonGauges, kPersonScores, kPersonWarnings, PersonState, SceneSpec} from '../protocol';
 import {hex} from '../theme';
 import {fixed} from '../words';
@@ -144,6 +144,7 @@ export class PersonCard {
   private readonly scores = new Map(
       (Object.keys(kPersonScores) as ScoreName[]).map((name) => [name, new ScoreRow(name)]));
   private readonly head = h('p', {class: 'hint', id: 'person-head'});
+  private readonly inputs = h('div', {id: 'person-inputs'});
   private readonly damage = h('p', {id: 'person-damage'});
   private readonly fatigue = h('p', {id: 'person-fatigue'});
   private readonly short = h('span', {class: 'hint'});  // beside the title, if the card is closed
@@ -160,7 +161,7 @@ export class PersonCard {
     this.body = h(
         'div', {class: 'person-body'},
         h('p', {class: 'hint legend'}, 'Load 0', scale, '100 % of limit or strength'),
-        title('Hands', 'measured'), ...rows(from('measured')),
+        title('Hands', 'measured'), ...rows(from('measured')), this.inputs,
         title('Body', 'modelled, 90 % band'), this.head, ...rows(from('modelled')),
         title('Scores', 'standard, probability'), ...[...this.scores.values()].map(({element}) => element),
         title('Muscles', 'modelled, lower bounds'), ...rows(from('muscles')),
@@ -209,6 +210,7 @@ export class PersonCard {
     for (const [name, gauge] of this.gauges) gauge.show(person.gauges[name]);
     for (const [name, row] of this.scores) row.show(person.scores[name]);
     setText(this.head, person.status === 'judged' && person.head ? kHeadWords[person.head] : '');
+    this.inputs.replaceChildren(...inputLines(person).map(({text, bad}) => h('p', {class: bad ? 'hint bad' : 'hint'}, text)));
     setText(this.damage, damageText(person));
     setText(this.fatigue, fatigueText(person));
   }
