@@ -75,7 +75,7 @@ export const kPlots: PlotSpec[][] = [
     },
   ],
   [{
-    id: 'elbow', title: 'Elbows', unit: 'm', digits: 2, least: 0.6,
+    id: 'links', title: 'Nearest links', unit: 'm', digits: 2, least: 0.6,
     series: [
       {label: 'apart', name: 'link_distance', color: '#23b5a4', value: (s) => finite(s.linkDistance)},
       limit('link_distance', 0, (s, spec) => (Number.isFinite(s.linkDistance) ?
