@@ -338,6 +338,32 @@ TEST(LettingGo, ContactLimitsTheSpeedByForceAndMasses) {
   EXPECT_NEAR(contact.clamped[0].share, 70.0 / 140, 1e-12);
 }
 
+// Returns the notes below the table of unintended contact.
+std::string NotesOn(const UnintendedContact& contact) {
+  SafetyAssessment safety;
+  safety.contact = contact;
+  std::string notes;
+  for (const SafetyTable& table : SafetyTables(safety))
+    if (table.title == "Unintended contact")
+      for (const std::string& note : table.notes) notes += note + "\n";
+  return notes;
+}
+
+// The bodies that can clamp are named even if the force of the clamping is unknown.
+TEST(Contact, NamesWhatCanClampWithAndWithoutABoundOnTheForce) {
+  UnintendedContact contact;
+  contact.fixtures = {"the table", "press"};
+  const std::string bodies =
+      "The object or the cobot can clamp a body part against: the table, press.";
+  EXPECT_NE(NotesOn(contact).find(bodies), std::string::npos);
+  EXPECT_NE(NotesOn(contact).find("so clamping is not judged"), std::string::npos);
+  contact.clamping_force = 70;
+  EXPECT_NE(NotesOn(contact).find(bodies), std::string::npos);
+  EXPECT_NE(NotesOn(contact).find("clamped with 70 N"), std::string::npos);
+  contact.fixtures.clear();
+  EXPECT_NE(NotesOn(contact).find("contains no floor, table or fixture"), std::string::npos);
+}
+
 // Only what touches the object or the cobot can clamp.
 TEST(LettingGo, ClampingNamesTheFixtures) {
   Scenario scenario = PersonScenario();

@@ -128,11 +128,22 @@ SafetyTable LettingGoTable(const SafetyAssessment& safety) {
   return table;
 }
 
-std::string FixtureWords(const std::vector<std::string>& fixtures) {
-  if (fixtures.empty())
-    return "The scenario contains no floor, table or fixture, so these shares apply only if the "
-           "real workplace contains one.";
-  return "The object or the cobot can clamp it against: " + Printable(Join(fixtures)) + ".";
+// States with which force a part of the body can be clamped, and against what.
+std::string ClampingWords(const UnintendedContact& contact) {
+  const std::string force =
+      contact.clamping_force
+          ? Formatted(
+                "A body part can be clamped with %.0f N, which is the scenario's bound on the "
+                "cobot's force.",
+                *contact.clamping_force)
+          : "The force with which a body part can be clamped is unknown, because the scenario has "
+            "no bound on the cobot's force (cobot.safety.force_cap), so clamping is not judged.";
+  if (!contact.fixtures.empty())
+    return force + " The object or the cobot can clamp a body part against: " +
+           Printable(Join(contact.fixtures)) + ".";
+  return force +
+         " The scenario contains no floor, table or fixture, so clamping is possible only if the "
+         "real workplace contains one.";
 }
 
 SafetyTable ContactTable(const UnintendedContact& contact) {
@@ -153,11 +164,7 @@ SafetyTable ContactTable(const UnintendedContact& contact) {
       "the cobot's end-effector at the largest speed of this run, %.2f m/s (at %.1f s), with an "
       "effective mass of %.1f kg. Limits: %s.",
       contact.speed, contact.time, contact.robot_mass, contact.edition.c_str()));
-  if (contact.clamping_force)
-    table.notes.push_back(
-        Formatted("A body part can be clamped with %.0f N, which is the scenario's bound on the "
-                  "cobot's force. %s",
-                  *contact.clamping_force, FixtureWords(contact.fixtures).c_str()));
+  table.notes.push_back(ClampingWords(contact));
   table.notes.emplace_back(
       "These limits do not apply to the forces at the handles. The numbers do not prove "
       "conformity, which requires measurements of the real application.");
