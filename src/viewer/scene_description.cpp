@@ -168,7 +168,9 @@ nlohmann::ordered_json DescribeFixtures(const Scenario& scenario, std::uint16_t 
                     {"size", ToJson(fixtures[i].size)},
                     {"pose", ToJson(fixtures[i].X_WG())},
                     {"color", ToJson(fixtures[i].color)}});
-    if (fixtures[i].keep_out) json.back()["keep_out"] = true;
+    if (!fixtures[i].keep_out) continue;
+    json.back()["keep_out"] = true;
+    if (!fixtures[i].name.empty()) json.back()["name"] = fixtures[i].name;
   }
   return json;
 }

@@ -250,6 +250,21 @@ TEST(Assets, CommentsAndOddFileNamesAreHandled) {
   fs::remove_all(folder);
 }
 
+TEST(Scene, NamesKeepOutVolumesOnly) {
+  Scenario scenario;
+  FixtureSpec shelf, head, unnamed;
+  shelf.name = "shelf";
+  head.name = "head";
+  head.keep_out = unnamed.keep_out = true;
+  scenario.environment.fixtures = {shelf, head, unnamed};
+  const auto fixtures = DescribeFixtures(scenario, 0);
+  EXPECT_FALSE(fixtures[0].contains("name"));
+  EXPECT_FALSE(fixtures[0].contains("keep_out"));
+  EXPECT_EQ(fixtures[1]["name"], "head");
+  EXPECT_EQ(fixtures[2]["keep_out"], true);
+  EXPECT_FALSE(fixtures[2].contains("name"));
+}
+
 TEST(Assets, OnlyExactPathsAreFound) {
   AssetStore assets;
   assets.AddPage();

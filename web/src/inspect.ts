@@ -20,6 +20,8 @@ function inspectionOfScene(app: App) {
     meshBox: (name: string) => stage.meshBox(name),
     // Bounding boxes in W of the fixtures that are present [m].
     fixtureBoxes: () => stage.fixtureBoxes,
+    // Texts and places in W of the labels above keep-out volumes [m].
+    fixtureLabels: () => stage.fixtureLabels,
     placeholders: () => stage.placeholders,
     arrowColour: (side: Side, of: 'force' | 'torque' = 'force') => stage.arrows[side][of].level,
     arrowVisible: (side: Side, of: 'force' | 'torque' = 'force') =>

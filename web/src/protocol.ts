@@ -39,6 +39,7 @@ export interface FixtureSpec {
   pose: Pose;
   color: Vec3;
   keep_out?: true;  // a volume that the cobot must not enter
+  name?: string;    // of a keep-out volume that has one
 }
 
 export interface ParameterSpec {

@@ -13,7 +13,7 @@ const kFixtures = [
   {shape: 'capsule', size: [0.04, 0.2, 0], pose: at([0.3, -0.5, 0.14]), color: [0.2, 0.5, 0.8]},
   {shape: 'sphere', size: [0.06, 0, 0], pose: at([0.8, 0.4, 0.06]), color: [0.8, 0.2, 0.2]},
   {shape: 'plane', size: [0.5, 0.2, 0], pose: at([0.9, -0.4, 0.3]), color: [0.3, 0.6, 0.4]},
-  {shape: 'box', size: [0.3, 0.3, 0.3], pose: at([0.9, 0.3, 0.8]), color, keep_out: true},
+  {shape: 'box', size: [0.3, 0.3, 0.3], pose: at([0.9, 0.3, 0.8]), color, keep_out: true, name: 'head'},
 ];
 const kObstacle = {...kFixtures[3], pose: at([0.7, 0.1, 0.5])};
 // Half extents in W.
@@ -51,6 +51,26 @@ test('only a keep-out volume is transparent', async () => {
   const boxes = await page.evaluate(() => window.predictor.fixtureBoxes());
   boxes.forEach(({opacity}, i) =>
     assert.equal(opacity < 1, kFixtures[i].keep_out === true, kFixtures[i].shape));
+});
+
+test('only a keep-out volume has a label, with its name, above it', async () => {
+  const labels = () => page.evaluate(() => window.predictor.fixtureLabels());
+  const [{text, p}, ...others] = await labels();
+  assert.equal(text, 'keep-out volume: head');
+  assert.deepEqual(others, []);
+  const {p: middle} = kFixtures.at(-1).pose;
+  for (const k of [0, 1]) assert.ok(Math.abs(p[k] - middle[k]) < 1e-3, `${p}`);
+  assert.ok(p[2] > middle[2] + kExtents.at(-1)[2] && p[2] < middle[2] + kExtents.at(-1)[2] + 0.1, `${p}`);
+});
+
+test('the labels follow the fixtures', async () => {
+  const texts = (expected) => page.waitForFunction(
+      (all) => JSON.stringify(window.predictor.fixtureLabels().map(({text}) => text)) === all, JSON.stringify(expected));
+  const {name, ...unnamed} = kFixtures.at(-1);
+  server.broadcast({type: 'fixtures', fixtures: [unnamed]});
+  await texts(['keep-out volume']);
+  server.broadcast({type: 'fixtures', fixtures: kFixtures});
+  await texts([`keep-out volume: ${name}`]);
 });
 
 test('a fixture of an event is drawn only while the event acts', async () => {

@@ -1,14 +1,16 @@
 // Shows the floor, the grid, the table, the fixtures and the light.
 import {
-  BoxGeometry, BufferGeometry, CapsuleGeometry, CircleGeometry, Color, CylinderGeometry, DirectionalLight, DoubleSide,
+  Box3, BoxGeometry, BufferGeometry, CapsuleGeometry, CircleGeometry, Color, CylinderGeometry, DirectionalLight, DoubleSide,
   Float32BufferAttribute, Fog, Group, HemisphereLight, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial,
   MeshStandardMaterial, PlaneGeometry, Scene, SphereGeometry, SRGBColorSpace,
 } from 'three';
 import {FixtureSpec, SceneSpec, Vec3} from '../protocol';
 import {kSceneColors, Theme} from '../theme';
+import {Label} from './label';
 
 const kFloorRadius = 6;   // [m]
 const kKeepOutOpacity = 0.3;
+const kAboveVolume = 0.04;  // of the label of a keep-out volume [m]
 const kGridHalf = 3;      // [m]
 const kGridStep = 0.1;    // [m]
 const kMajorEvery = 5;    // lines
@@ -45,11 +47,18 @@ function fixtureMesh(fixture: FixtureSpec): Mesh {
   const {pose: {p, q}, color, keep_out: keepOut = false} = fixture;
   const mesh = new Mesh(fixtureForm(fixture), new MeshStandardMaterial({
     color: new Color().setRGB(...color, SRGBColorSpace), roughness: 0.8, side: DoubleSide,
-    transparent: keepOut, opacity: keepOut ? kKeepOutOpacity : 1, depthWrite: !keepOut}));
+    transparent: keepOut, opacity: keepOut ? kKeepOutOpacity : 1, depthWrite: !keepOut,
+  }));
   mesh.position.set(...p);
   mesh.quaternion.set(q[1], q[2], q[3], q[0]);
   mesh.castShadow = mesh.receiveShadow = !keepOut;
   return mesh;
+}
+
+function boxOf(mesh: Mesh): Box3 {
+  mesh.updateMatrix();
+  mesh.geometry.computeBoundingBox();
+  return mesh.geometry.boundingBox!.clone().applyMatrix4(mesh.matrix);
 }
 
 export class Room {
@@ -72,6 +81,7 @@ export class Room {
       new CircleGeometry(1, 32), new MeshLambertMaterial({color: 0x5b8def})));
   private table: Mesh | null = null;
   private readonly fixtures = new Group();
+  private labels: Label[] = [];  // of keep-out volumes, above them
 
   constructor() {
     this.floor.receiveShadow = true;
@@ -116,16 +126,32 @@ export class Room {
   // Shows only these fixtures.
   setFixtures(fixtures: FixtureSpec[]) {
     this.fixtures.clear();
-    for (const fixture of fixtures) this.fixtures.add(fixtureMesh(fixture));
+    this.labels.forEach((label) => label.dispose());
+    this.labels = [];
+    for (const fixture of fixtures) {
+      const mesh = fixtureMesh(fixture);
+      this.fixtures.add(mesh);
+      if (fixture.keep_out) this.addLabel(fixture.name ?? '', mesh);
+    }
+  }
+
+  private addLabel(name: string, mesh: Mesh) {
+    const label = new Label(name === '' ? 'keep-out volume' : `keep-out volume: ${name}`);
+    const {min, max} = boxOf(mesh);
+    label.sprite.position.set((min.x + max.x) / 2, (min.y + max.y) / 2, max.z + kAboveVolume);
+    this.labels.push(label);
+    this.group.add(label.sprite);
+  }
+
+  get fixtureLabels(): {text: string; p: Vec3}[] {
+    return this.labels.map(({text, sprite}) => ({text, p: sprite.position.toArray()}));
   }
 
   get fixtureBoxes(): {min: Vec3; max: Vec3; opacity: number}[] {
     return this.fixtures.children.map((child) => {
-      const {geometry, matrix, material} = child as Mesh<BufferGeometry, MeshStandardMaterial>;
-      child.updateMatrix();
-      geometry.computeBoundingBox();
-      const box = geometry.boundingBox!.clone().applyMatrix4(matrix);
-      return {min: box.min.toArray(), max: box.max.toArray(), opacity: material.opacity};
+      const mesh = child as Mesh<BufferGeometry, MeshStandardMaterial>;
+      const box = boxOf(mesh);
+      return {min: box.min.toArray(), max: box.max.toArray(), opacity: mesh.material.opacity};
     });
   }
 

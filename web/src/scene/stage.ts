@@ -308,6 +308,10 @@ export class Stage {
     return this.room.fixtureBoxes;
   }
 
+  get fixtureLabels() {
+    return this.room.fixtureLabels;
+  }
+
   // Bounding box in W of a link of the cobot, of 'object', or of 'movable:NAME', which includes
   // only visual shapes [m].
   meshBox(name: string): {min: Vec3; max: Vec3} | null {
