@@ -106,6 +106,47 @@ TEST(Modules, KeepThirdPartiesInTheirFolders) {
   }
 }
 
+// The engines are behind src/simulation/engine.h. In src/simulation, only the files that choose an
+// engine may include its files. Everything else, such as equilibrium, linearisation, coupling,
+// attachment, controllers and hazards, uses an engine only through this interface.
+TEST(Engines, AreKnownOnlyToTheirFoldersAndToTheChoice) {
+  const fs::path folder = kSources / "src" / "simulation";
+  const std::set<std::string> may_choose = {"engine.cpp", "engine_version.cpp"};
+  const std::regex of_engine(R"re(#include ["<](simulation/(mujoco|dart)/|mujoco|dart))re");
+  std::set<std::string> including, files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+    const fs::path file = fs::relative(entry.path(), folder);
+    const std::string part = file.begin()->string();
+    if (part == "mujoco" || part == "dart") continue;
+    files.insert(file.string());
+    if (std::regex_search(Read(entry.path()), of_engine)) including.insert(file.string());
+  }
+  for (const char* file : {"equilibrium.cpp", "linearise.cpp", "coupling.cpp", "controller.cpp",
+                           "controllers/cartesian_impedance.cpp"})
+    EXPECT_TRUE(files.contains(file)) << file << " is not covered by this rule";
+  EXPECT_EQ(including, may_choose);
+}
+
+// Outside src/simulation, the program knows engines only through the interface, except for the
+// places below, which state facts about one engine.
+TEST(Engines, AreKnownToFewOtherFiles) {
+  const std::regex of_engine(R"re(#include "simulation/(mujoco|dart)/(\w+)\.h")re");
+  const std::set<std::string> may_include = {
+      "src/analysis/check/contact.cpp: contact_law",  // the law that MuJoCo's contacts obey
+  };
+  std::set<std::string> including;
+  for (const char* folder : {"src", "apps"})
+    for (const auto& entry : fs::recursive_directory_iterator(kSources / folder)) {
+      const std::string file = fs::relative(entry.path(), kSources).string();
+      if (file.starts_with("src/simulation/") || file.starts_with("apps/dart_engine/")) continue;
+      const std::string text = Read(entry.path());
+      for (std::sregex_iterator it(text.begin(), text.end(), of_engine), end; it != end; ++it)
+        including.insert(file + ": " + (*it)[2].str());
+    }
+  EXPECT_EQ(including, may_include);
+}
+
 // Only RulesFor may decide whether the arms are real. All other code must use the operating rule
 // that applies.
 TEST(OperatingRules, AloneDecideWhatRealArmsChange) {

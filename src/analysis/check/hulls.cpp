@@ -5,8 +5,9 @@
 
 #include "core/format.h"
 #include "models/object_model.h"
+#include "models/rigid_bodies.h"
 #include "scenario/paths.h"
-#include "simulation/mujoco/mesh_holes.h"
+#include "simulation/collision_hull.h"
 
 namespace predictor {
 namespace {
@@ -16,8 +17,7 @@ constexpr double kMuchLarger = 1.3;  // volume of a hull divided by that of its 
 void AddWarnings(const std::vector<ModelShape>& shapes, const std::string& key,
                  std::vector<std::string>* warnings) {
   for (const ModelShape& shape : shapes) {
-    if (shape.kind != ShapeKind::kMesh) continue;
-    const double excess = HullExcess(ReadCollisionMesh(shape, key));
+    const double excess = HullExcess(shape, key);
     if (excess <= kMuchLarger) continue;
     warnings->push_back(Formatted(
         "%s: %s: The convex hull of the mesh %s collides instead of the mesh, and is %.1f times "
@@ -38,14 +38,10 @@ void AddCobotWarnings(const Scenario& s, bool surroundings, const std::vector<Co
       return pair.state == PairState::kCanTouch && (pair.link == link || pair.other == link);
     });
   };
-  std::vector<bool> moves(urdf.links.size(), false);
-  for (const UrdfJoint& joint : urdf.joints) {  // parents come before children
-    const auto child = static_cast<std::size_t>(joint.child);
-    moves[child] =
-        joint.type != UrdfJointType::kFixed || moves[static_cast<std::size_t>(joint.parent)];
-  }
+  const std::vector<std::size_t> bodies = RigidBodies(urdf);
   for (std::size_t i = 0; i < urdf.links.size(); ++i)
-    if ((surroundings && moves[i]) || has_pair(urdf.links[i].name))
+    if ((surroundings && bodies[i] != static_cast<std::size_t>(urdf.root)) ||
+        has_pair(urdf.links[i].name))
       AddWarnings(urdf.links[i].collisions, "cobot.model", warnings);
 }
 

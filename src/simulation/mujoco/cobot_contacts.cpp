@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "models/arm_model.h"
+#include "models/rigid_bodies.h"
 #include "scenario/paths.h"
 #include "simulation/mujoco/fixtures.h"
 #include "simulation/mujoco/mesh_holes.h"
@@ -40,15 +41,12 @@ void CobotShapes::FindBodies(const UrdfModel& urdf) {
   links_.resize(urdf.links.size());
   has_shapes_.assign(links_.size(), false);
   carrier_.assign(links_.size(), root_);
+  const std::vector<std::size_t> bodies = RigidBodies(urdf);
   for (std::size_t i = 0; i < links_.size(); ++i) {
     links_[i].name = urdf.links[i].name;
-    links_[i].body = i;
+    links_[i].body = bodies[i];
     links_[i].has_shapes = !urdf.links[i].collisions.empty();
   }
-  for (const UrdfJoint& joint : urdf.joints)  // parents come before children
-    if (joint.type == UrdfJointType::kFixed)
-      links_[static_cast<std::size_t>(joint.child)].body =
-          links_[static_cast<std::size_t>(joint.parent)].body;
   for (const Link& link : links_)
     if (link.has_shapes) has_shapes_[link.body] = true;
   for (const UrdfJoint& joint : urdf.joints) {

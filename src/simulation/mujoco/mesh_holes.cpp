@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "simulation/collision_hull.h"
 #include "simulation/mujoco/library.h"
 
 namespace predictor {
@@ -153,6 +154,10 @@ double HullExcess(const CollisionMesh& mesh) {
   }
   const double hull = HullVolume(mesh);
   return volume == 0 || hull == 0 ? 1 : hull / std::fabs(volume);
+}
+
+double HullExcess(const ModelShape& shape, const std::string& key) {
+  return shape.kind == ShapeKind::kMesh ? HullExcess(ReadCollisionMesh(shape, key)) : 1;
 }
 
 void CheckHull(const ModelShape& shape, const std::string& key) {

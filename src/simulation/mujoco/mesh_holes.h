@@ -15,9 +15,7 @@ namespace predictor {
 // mesh's diagonal are treated as one vertex.
 int ThroughHoles(const CollisionMesh& mesh);
 
-// Returns the volume of the convex hull of a mesh, divided by the volume that the mesh encloses. A
-// few missing triangles hardly change this volume. Returns 1 if the triangles do not have a common
-// orientation, so that the volume is unknown.
+// Returns what simulation/collision_hull.h describes, for a mesh that has been read.
 double HullExcess(const CollisionMesh& mesh);
 
 // Throws InputError if the shape is a mesh with a hole through it. `key`: of the scenario.
