@@ -51,6 +51,7 @@ struct Contact {
   int fixture = -1;                    // the other's index in environment.fixtures; −1: none
   bool yields = false;                 // the fixture has a stiffness [N/m]
   bool keep_out = false;               // the fixture is a keep-out volume
+  bool floor = false;                  // the other one is the floor
   int movable = -1;                    // the other's index in environment.objects; −1: none
   std::string_view other_link;  // the other one if it is a link of the cobot, or empty. If both
                                 // indices are −1 and this is empty, it is the floor or the table
@@ -213,12 +214,13 @@ class Engine {
 
   // Options for searches outside the tick. They determine whether the joints have Coulomb friction,
   // the relative accuracy with which contacts are solved, whether the movable objects touch
-  // anything, and whether the contacts of cobot.touches act.
+  // anything, whether the contacts of cobot.touches act, and whether any contacts act.
   struct Options {
     bool coulomb_friction = true;
     double tolerance = 0;
     bool movables_touch = true;
     bool cobot_touches = true;
+    bool contacts = true;
   };
   virtual Options options() const noexcept = 0;
   virtual void SetOptions(const Options& options) noexcept = 0;

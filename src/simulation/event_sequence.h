@@ -20,6 +20,8 @@ class EventSequence {
   std::size_t size() const { return events_.size(); }
   const HazardKind& kind(std::size_t i) const { return *events_[i].kind; }
   double duration(std::size_t i) const { return events_[i].duration; }  // [s]; 0: until the end
+  // Returns the number of the movable object that an event picks up, or −1 for none.
+  int movable(std::size_t i) const { return events_[i].movable; }
   double longest_delay() const;     // sum of all that events add [s]
   bool loosens_attachment() const;  // an event lets the object slip, break loose or be put down
   bool releases_object() const;     // an event opens the gripper

@@ -18,7 +18,7 @@ constexpr double kMemoryStep = 1e-6;  // of a controller
 
 class Linearisation {
  public:
-  Linearisation(ControlledScene* scene, Engine* engine, double t)
+  Linearisation(ControlledScene* scene, Engine* engine, double t, bool contacts)
       : scene_(*scene),
         engine_(*engine),
         time_(t),
@@ -31,7 +31,8 @@ class Linearisation {
     engine_.SetOptions({.coulomb_friction = false,
                         .tolerance = options_.tolerance,
                         .movables_touch = false,
-                        .cobot_touches = false});
+                        .cobot_touches = false,
+                        .contacts = contacts});
   }
   ~Linearisation() {
     engine_.SetOptions(options_);
@@ -219,12 +220,12 @@ class Linearisation {
 }  // namespace
 
 LinearModel Linearise(ControlledScene* scene, Engine* engine, double t, const Hands& hands,
-                      const std::array<Pose, kHands>& X_OD) {
-  return Linearisation(scene, engine, t).Compute(hands, X_OD);
+                      const std::array<Pose, kHands>& X_OD, bool contacts) {
+  return Linearisation(scene, engine, t, contacts).Compute(hands, X_OD);
 }
 
 SceneSlopes SlopesOf(ControlledScene* scene, Engine* engine, double t) {
-  return Linearisation(scene, engine, t).Slopes();
+  return Linearisation(scene, engine, t, true).Slopes();
 }
 
 }  // namespace predictor

@@ -11,10 +11,10 @@ namespace predictor {
 // the set-point of time t [s]. The state contains changes of the coordinates (nv, tangent space)
 // and their rates (nv), and then the states of the wrist sensor and the controller. LinearModel
 // defines the inputs and outputs, which are those of the handles D at X_OD. The inputs and outputs
-// of sides that are not `present` are zero. Coulomb friction is ignored. Changes the state of
-// `engine` and `scene`. Allocates memory.
+// of sides that are not `present` are zero. Coulomb friction is ignored. `contacts` states whether
+// the contacts at this posture act. Changes the state of `engine` and `scene`. Allocates memory.
 LinearModel Linearise(ControlledScene* scene, Engine* engine, double t, const Hands& hands,
-                      const std::array<Pose, kHands>& X_OD);
+                      const std::array<Pose, kHands>& X_OD, bool contacts = true);
 
 // The derivatives of the scene without hands, in which the controller has no period and no delay.
 // The states are those of Linearise, with n velocities and m states of sensor and memory.

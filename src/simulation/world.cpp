@@ -77,6 +77,12 @@ struct World::Impl {
     return result;
   }
 
+  LinearModel Linearise(bool contacts) {
+    return Examine([&](Engine* copy) {
+      return predictor::Linearise(&controlled, copy, state.time, hands, X_OD, contacts);
+    });
+  }
+
   Engine& engine() const noexcept { return controlled.engine(); }
 
   void SetCoupling(const Scenario& scenario) {
@@ -304,6 +310,10 @@ struct World::Impl {
       if (!of_object) continue;
       const bool is_floor = contact.fixture < 0 && contact.p_W.z() < kFloorHeight;
       (is_floor ? support.floor : support.other) += contact.force_W.z();
+      if (contact.fixture >= 0)
+        support.fixtures |= std::uint64_t{1} << contact.fixture;
+      else
+        (is_floor ? support.touches_floor : support.touches_table) = true;
     }
     return support;
   }
@@ -359,12 +369,8 @@ std::vector<double> World::ControllerTape() const {
 
 ObjectSupport World::SupportAtStart() const { return impl_->Support(); }
 
-LinearModel World::Linearise() const {
-  return impl_->Examine([this](Engine* copy) {
-    return predictor::Linearise(&impl_->controlled, copy, impl_->state.time, impl_->hands,
-                                impl_->X_OD);
-  });
-}
+LinearModel World::Linearise() const { return impl_->Linearise(true); }
+LinearModel World::LineariseWithoutContacts() const { return impl_->Linearise(false); }
 
 SampledLoop World::JudgeController() const {
   return impl_->Examine([this](Engine* copy) {

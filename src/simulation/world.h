@@ -2,6 +2,7 @@
 // engine behind this class simulates it.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,10 +15,13 @@
 
 namespace predictor {
 
-// The upward forces that carry the object at rest in addition to the cobot's force [N].
+// The upward forces that carry the object at rest in addition to the cobot's force [N], and the
+// bodies that the object touches.
 struct ObjectSupport {
   double floor = 0;  // of the virtual floor
   double other = 0;  // of the table and of fixtures
+  bool touches_floor = false, touches_table = false;
+  std::uint64_t fixtures = 0;  // that the object touches: bit = number
 };
 
 class World {
@@ -70,6 +74,9 @@ class World {
   // contains the tangent-space change of the coordinates (nv) and then their rates (nv). Allocates
   // memory.
   LinearModel Linearise() const;
+  // Returns the same model without the contacts that exist at this posture. To this model, a
+  // prediction can add one contact at a time.
+  LinearModel LineariseWithoutContacts() const;
 
   // Judges the stability of the loop that the sampled controller and this scene form. Allocates
   // memory.

@@ -1,4 +1,4 @@
-// Tests what the report says about contact with fixtures.
+// Tests what the report says about contact.
 #include "analysis/contact_run/contact_run.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,8 @@ TickRecord Pressed(double depth, double speed) {
 }
 
 TEST(ContactCollector, FindsDepthForceAndTimeOfAPressedBox) {
-  ContactCollector collector(Load("box_9kg.yaml", {Fixtures("stiffness: 20000, damping: 60")}));
+  ContactCollector collector(
+      Load("box_9kg.yaml", {Fixtures("stiffness: 20000, damping: 60"), "environment.floor=false"}));
   collector.Add(Pressed(-0.01, 0));  // above
   EXPECT_EQ(collector.facts()[0].time, 0);
   for (int k = 0; k < 100; ++k) collector.Add(Pressed(0.001, -0.01));
@@ -69,6 +70,59 @@ TEST(ContactCollector, IgnoresMovableObjectsOnAFixture) {
   collector.Add(record);
   EXPECT_NEAR(collector.facts()[0].time, 0.001, 1e-12);
   EXPECT_NEAR(collector.facts()[0].depth, 0.001, 1e-6);
+}
+
+// The floor is at z = 0, and the table at 0.3 m.
+TEST(ContactCollector, DistinguishesFloorAndTable) {
+  ContactCollector collector(
+      Load("box_9kg.yaml", {"environment.table={size: [0.4, 0.4, 0.1], top: [0.5, 0.2, 0.3]}"}));
+  ASSERT_EQ(collector.facts().size(), 2U);
+  const ContactFacts &table = collector.facts()[0], &floor = collector.facts()[1];
+  EXPECT_EQ(table.surface.kind, Surface::Kind::kTable);
+  EXPECT_EQ(floor.surface.kind, Surface::Kind::kFloor);
+  TickRecord record = Pressed(0, 0);
+  record.object.pose.p = {0.5, 0.2, 0.3 + kHalfHeight - 0.001};
+  collector.Add(record);
+  EXPECT_NEAR(table.time, 0.001, 1e-12);
+  EXPECT_NEAR(table.depth, 0.001, 1e-6);
+  EXPECT_NEAR(table.pressing, 20, 1e-9);
+  EXPECT_EQ(floor.time, 0);
+  record.object.pose.p = {-1, 0.2, kHalfHeight - 0.002};
+  collector.Add(record);
+  EXPECT_NEAR(table.time, 0.001, 1e-12);
+  EXPECT_NEAR(floor.time, 0.001, 1e-12);
+  EXPECT_NEAR(floor.depth, 0.002, 1e-6);
+}
+
+TEST(ContactCollector, FindsTheFloorWithoutOtherBodies) {
+  ContactCollector collector(Load("box_9kg.yaml"));
+  TickRecord record = Pressed(0, 0);
+  record.object.pose.p = {0.5, 0.2, kHalfHeight - 0.002};
+  collector.Add(record);
+  ASSERT_EQ(collector.facts().size(), 1U);
+  EXPECT_NEAR(collector.facts()[0].depth, 0.002, 1e-6);
+}
+
+// A movable object that the carried object holds does not touch it.
+TEST(ContactCollector, FindsAPushedMovableObject) {
+  ContactCollector collector(Load(
+      "box_9kg.yaml", {"environment.objects=[{name: crate, primitive: {shape: box, size: [0.2, "
+                       "0.2, 0.2], mass: 3}, xyz: [0.5, 0.2, 0.1]}]"}));
+  const auto crate = std::ranges::find(collector.facts(), Surface{Surface::Kind::kMovable, 0},
+                                       &ContactFacts::surface);
+  ASSERT_NE(crate, collector.facts().end());
+  TickRecord record = Pressed(0, 0);
+  record.movable_count = 1;
+  record.movables[0] = {{0.5, 0.2, 0.5}, {1, 0, 0, 0}};
+  record.object.pose.p = {0.5, 0.2, 0.6 + kHalfHeight - 0.001};
+  record.held = 1;
+  collector.Add(record);
+  EXPECT_EQ(crate->time, 0);
+  record.held = 0;
+  collector.Add(record);
+  EXPECT_NEAR(crate->time, 0.001, 1e-12);
+  EXPECT_NEAR(crate->depth, 0.001, 1e-6);
+  EXPECT_NEAR(crate->pressing, 20, 1e-9);
 }
 
 // An obstacle counts only after it has appeared, not while it waits because it overlaps the object.
@@ -110,7 +164,7 @@ TEST(ContactChapter, StatesWhatTheDeviceCannotRender) {
   const std::string page = ChapterOf(s, 10, &run, &plots);
   EXPECT_NE(page.find("<section id=\"contact\""), std::string::npos);
   EXPECT_EQ(run.problem, "");
-  ASSERT_EQ(run.facts.size(), 2U);
+  ASSERT_EQ(run.facts.size(), 3U);
   EXPECT_GT(run.facts[0].time, 1);  // the table
   EXPECT_LT(run.facts[0].depth, 2e-3);
   EXPECT_GT(run.facts[0].pressing, 1);
@@ -141,12 +195,24 @@ TEST(ContactChapter, NamesTheFixturesAndTheirStiffness) {
   EXPECT_EQ(run.facts[0].time, 0);
 }
 
-TEST(ContactChapter, IsAbsentWithoutAFixture) {
+TEST(ContactChapter, IsAbsentIfOnlyTheFloorExistsAndIsNotTouched) {
   ContactRun run;
   std::vector<Plot> plots;
   const std::string page = ChapterOf(Load("box_9kg.yaml"), 0.1, &run, &plots);
   EXPECT_EQ(page.find("id=\"contact\""), std::string::npos);
   EXPECT_TRUE(plots.empty());
+}
+
+TEST(ContactChapter, DescribesTheTable) {
+  ContactRun run;
+  std::vector<Plot> plots;
+  const std::string page = ChapterOf(Load("hybrid_force_position.yaml"), 0.1, &run, &plots);
+  ASSERT_EQ(run.predictions.size(), 1U);
+  EXPECT_EQ(run.facts[0].surface.kind, Surface::Kind::kTable);
+  EXPECT_GT(run.facts[0].time, 0.05);
+  EXPECT_NE(page.find("<th>table</th>"), std::string::npos);
+  EXPECT_NE(page.find("not given"), std::string::npos);
+  EXPECT_EQ(page.find("<th>floor</th>"), std::string::npos);
 }
 
 TEST(ContactChapter, InDirectModeNoArmsRenderTheContact) {

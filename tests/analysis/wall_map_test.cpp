@@ -22,7 +22,7 @@ TEST(WallMap, AssumesAWallBelowAnObjectThatMeetsNoFixture) {
   const MapBase base = BaseOf(Load("box_9kg.yaml"));
   const std::vector<WallPicture> pictures = WallPicturesOf(base);
   ASSERT_EQ(pictures.size(), 1U);
-  EXPECT_TRUE(pictures[0].at.fixtures.empty());
+  EXPECT_TRUE(pictures[0].at.surfaces.empty());
   EXPECT_EQ(pictures[0].at.wall.normal, Vector3::UnitZ());
   EXPECT_EQ(pictures[0].at.Varying().damping, 0);
   EXPECT_EQ(WallInWords(pictures[0]),
@@ -63,7 +63,7 @@ TEST(WallMap, EachLineHasTheLeadOfARunWithItsDelay) {
 TEST(WallMap, PointsAreTheSinglePredictions) {
   const Scenario s = Load("box_9kg.yaml", {kPlane});
   const MapBase base = BaseOf(s);
-  const FixtureWall at = WallPicturesOf(base)[0].at;
+  const ContactWall at = WallPicturesOf(base)[0].at;
   EXPECT_EQ(at.Varying().damping, 60);
   const LinearModel world = World(s).Linearise();
   double before = kStiffestWall;

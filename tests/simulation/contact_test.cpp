@@ -6,9 +6,49 @@
 #include <utility>
 
 #include "free_body.h"
+#include "simulation/mujoco/contact_law.h"
 
 namespace predictor {
 namespace {
+
+// ---- a ball on the floor -----------------------------------------------------------------------
+
+// Presses a ball that just touches the floor, and returns its depth [m] after a time [s].
+double DepthOnFloor(double force, double time) {
+  constexpr double kRadius = 0.05;  // [m]
+  Scenario s = SceneOfBody(Shape::kSphere, {kRadius, 0, 0}, {}, 0, EngineKind::kMujoco);
+  s.environment.floor = true;
+  FreeBody body(s);
+  body.Place({Vector3(2, 0, kRadius), Quaternion::Identity()});
+  Wrench press = Wrench::Zero();
+  press[2] = -force;
+  body.Run(time, press);
+  return kRadius - body.pose().p.z();
+}
+
+TEST(FloorContact, HasTheStiffnessOfItsLaw) {
+  const double light = 1 / LightContactLaw(kBodyMass).stiffness;
+  EXPECT_NEAR(DepthOnFloor(1, 1), light, kFormAccuracy * light);
+  constexpr double kForce = 300;  // [N]; deeper than 1 mm
+  const double deep = kForce / DeepContactLaw(kBodyMass).stiffness;
+  EXPECT_GT(deep, 1e-3);
+  EXPECT_NEAR(DepthOnFloor(kForce, 1), deep, kFormAccuracy * deep);
+}
+
+// A critically damped spring under a constant force. In the first step, the ball does not yet touch
+// the floor. Half a step of the simulation is 2.4 % of the time constant.
+TEST(FloorContact, HasTheInertiaAndDampingOfItsLaw) {
+  const ContactLaw law = LightContactLaw(kBodyMass);
+  const double mass = kBodyMass + law.inertia, rest = 1 / law.stiffness;
+  const double omega = std::sqrt(law.stiffness / mass);
+  EXPECT_NEAR(law.damping / (2 * mass * omega), 1, 1e-12);
+  for (const double time : {0.02, 0.04, 0.08}) {
+    const double v = kOneStep / kBodyMass;  // after the first step, under 1 N
+    const double y = v * kOneStep - rest, after = time - kOneStep;
+    const double expected = rest + (y + (v + omega * y) * after) * std::exp(-omega * after);
+    EXPECT_NEAR(DepthOnFloor(1, time), expected, 0.03 * rest) << time;
+  }
+}
 
 // ---- a block on an incline ---------------------------------------------------------------------
 

@@ -37,22 +37,32 @@ inline FixtureSpec TableTop(double friction) {
   return table;
 }
 
+inline Scenario SceneOfBody(Shape shape, const Vector3& size,
+                            const std::vector<FixtureSpec>& fixtures, double gravity,
+                            EngineKind kind) {
+  Scenario s = PandaScene();
+  s.object.primitive = PrimitiveSpec{};
+  s.object.primitive->shape = shape;
+  s.object.primitive->size = size;
+  s.object.primitive->mass = kBodyMass;
+  s.environment.fixtures = fixtures;
+  s.environment.gravity = gravity;
+  s.simulation.engine = kind;
+  return s;
+}
+
 // The scene contains the cobot, which does not touch the body.
 class FreeBody {
  public:
   FreeBody(Shape shape, const Vector3& size, const std::vector<FixtureSpec>& fixtures,
            double gravity = kGravity, EngineKind kind = EngineKind::kMujoco)
-      : FreeBody([&] {
-          Scenario s = PandaScene();
-          s.object.primitive = PrimitiveSpec{};
-          s.object.primitive->shape = shape;
-          s.object.primitive->size = size;
-          s.object.primitive->mass = kBodyMass;
-          s.environment.fixtures = fixtures;
-          s.environment.gravity = gravity;
-          s.simulation.engine = kind;
-          return s;
-        }()) {}
+      : FreeBody(SceneOfBody(shape, size, fixtures, gravity, kind)) {}
+  explicit FreeBody(const Scenario& s)
+      : robot_(RobotModel::Load(
+            {s.cobot.model, s.folder(), s.cobot.remove_links, s.cobot.base.ToPose(), "cobot"})),
+        engine_(s.simulation.engine == EngineKind::kDart
+                    ? MakeDartEngine(s, *robot_, Holding::kFree)
+                    : MakeEngine(s, *robot_, false, Holding::kFree)) {}
 
   void Place(const Pose& X, const Vector3& v = Vector3::Zero()) {
     FrameMotion O;
@@ -99,13 +109,6 @@ class FreeBody {
   }
 
  private:
-  explicit FreeBody(const Scenario& s)
-      : robot_(RobotModel::Load(
-            {s.cobot.model, s.folder(), s.cobot.remove_links, s.cobot.base.ToPose(), "cobot"})),
-        engine_(s.simulation.engine == EngineKind::kDart
-                    ? MakeDartEngine(s, *robot_, Holding::kFree)
-                    : MakeEngine(s, *robot_, false, Holding::kFree)) {}
-
   std::shared_ptr<const RobotModel> robot_;
   std::unique_ptr<Engine> engine_;
   Vector3 mean_force_ = Vector3::Zero();

@@ -84,7 +84,6 @@ class Judge {
     for (std::string& line : StartWarnings(report_->start)) Warn(std::move(line));
     for (std::string& line : HullWarnings(s_, report_->start.pairs)) Warn(std::move(line));
     LooseObject();
-    MovableObjects();
     Script();
     for (std::string& line : EventWarnings(s_, report_->models.X_WO)) Warn(std::move(line));
     if (!report_->reach) return;
@@ -122,36 +121,26 @@ class Judge {
     if (!report_->controller.is_stable()) Bad(ControllerProblem(s_, *report_));
   }
 
+  // Warns of an event after which a part of this report no longer applies.
+  void AfterEvent(std::size_t i, const char* kind, const char* consequence) {
+    Warn(Formatted("After events.%zu (%s), %s Simulate the scenario to see what follows the event.",
+                   i, kind, consequence));
+  }
+
   void LooseObject() {
     const EventSequence events(s_);
     for (std::size_t i = 0; i < events.size(); ++i) {
       const HazardKind& kind = events.kind(i);
       if (kind.needs == HazardNeeds::kMovable)
-        Warn(Formatted(
-            "After events.%zu (%s), the object may hold a movable object. Reach, stability "
-            "and torques here are those without it. Simulate the scenario to see what "
-            "follows the event.",
-            i, kind.name));
-      if (kind.needs != HazardNeeds::kSlipping && kind.needs != HazardNeeds::kNoEnd &&
-          kind.needs != HazardNeeds::kRelease)
-        continue;
-      Warn(
-          Formatted("After events.%zu (%s), the object may be loose. The reach, stability and "
-                    "torques in this report apply only while the object is attached to the cobot. "
-                    "Simulate the scenario to see what follows the event.",
-                    i, kind.name));
+        AfterEvent(i, kind.name,
+                   "the object may hold a movable object. The reach, the stability margin and the "
+                   "torques in this report are those without it.");
+      if (kind.needs == HazardNeeds::kSlipping || kind.needs == HazardNeeds::kNoEnd ||
+          kind.needs == HazardNeeds::kRelease)
+        AfterEvent(i, kind.name,
+                   "the object may be loose. The reach, stability and torques in this report apply "
+                   "only while the object is attached to the cobot.");
     }
-  }
-
-  // The linear model contains no movable object.
-  void MovableObjects() {
-    const auto& objects = s_.environment.objects;
-    if (std::none_of(objects.begin(), objects.end(),
-                     [](const MovableSpec& object) { return object.Touches("object"); }))
-      return;
-    Warn(
-        "The object may push a movable object (environment.objects). Stability and torques here "
-        "are those without this contact. Simulate the scenario to see what a push does.");
   }
 
   void Script() {
@@ -257,8 +246,10 @@ class Judge {
 
   // The loop may be unstable even without contact. The function Stability reports such a loop.
   void Contact(const ContactReport& r) {
-    if (r.stable || report_->stability->margin.gain < 1) return;
-    const std::string key = "environment.fixtures." + std::to_string(r.fixtures[0]);
+    if (report_->stability->margin.gain < 1) return;
+    const std::string what =
+        KeyOf(r.surfaces[0]) + ": the haptic loop oscillates while the object ";
+    const bool is_fixture = r.surfaces[0].kind == Surface::Kind::kFixture;
     const std::string limit =
         r.yields && r.limit.reached
             ? Formatted(
@@ -267,9 +258,22 @@ class Judge {
                   "%.1f Hz.",
                   r.limit.stiffness, r.limit.frequency)
             : "";
-    Warn(key + ": the haptic loop oscillates while the object touches this fixture." + limit +
-         " Reduce the stiffness of the fixture, increase its damping, use lighter hands, or use "
-         "faster arms.");
+    if (!r.stable && is_fixture)
+      Warn(what + "touches this fixture." + limit +
+           " Reduce the stiffness of the fixture, increase its damping, use lighter hands, or use "
+           "faster arms.");
+    else if (!r.stable && r.is_movable())
+      Warn(what +
+           "touches this movable object and cannot push it away. Use lighter hands or faster "
+           "arms.");
+    else if (!r.stable)
+      Warn(what +
+           "touches it. Use lighter hands or faster arms, or replace it by a fixture with a "
+           "stiffness.");
+    if (r.pushed && !r.pushed->stable)
+      Warn(what + "pushes this movable object. Use lighter hands or faster arms.");
+    if (r.held && !r.held->stable)
+      Warn(what + "holds this movable object. Use lighter hands or faster arms.");
   }
 
   const Scenario& s_;
@@ -307,7 +311,9 @@ void CheckDevice(const Scenario& s, const World& world, const CheckOptions& opti
   report->stability = CheckStability(
       s, linear, {0.8, 1.5, 3}, {100, 250, 500, 1000},
       [&](double share) { options.progress(middle + share * (1 - middle), "stability"); });
-  report->contacts = CheckContacts(s, linear, report->models.X_WO, report->stability->lead);
+  report->contacts =
+      CheckContacts(s, world, report->stability->lead, CanReachFloor(s, report->models.X_WO));
+  report->link_contacts = LinkContacts(s);
   report->stability->withheld = options.machine && !UnmeasuredLoops(*options.machine, s).empty();
 }
 

@@ -25,7 +25,6 @@ inline constexpr double kMinSingularValue = 0.03;
 inline constexpr double kMinMargin = 2;           // factor by which the hands' impedance may grow
                                                   // (StabilityMargin)
 inline constexpr double kMarginPrecision = 1.02;  // precision of the bisection for the margin
-inline constexpr double kPathStep = 0.02;         // interval of a path's samples [s]
 
 // The results for the virtual cobot with its load at rest, and for the arms.
 struct ModelsReport {
@@ -77,7 +76,10 @@ struct CheckReport {
   std::optional<BaseProposal> proposal;
   std::optional<ShiftProposal> shift_proposal;
   std::optional<StabilityReport> stability;  // empty without a device
-  std::vector<ContactReport> contacts;       // with fixtures that touch the object; the same
+  // Contacts of the object with its surroundings, and the keys that let the cobot's links touch
+  // something, whose contacts are not predicted. Both are empty without a device.
+  std::vector<ContactReport> contacts;
+  std::vector<std::string> link_contacts;
   // `stop` is a stop from `handle_speed` [m/s] as the arms perform it (StopOfArms). `longest_stop`
   // is the same stop with a joint at its speed limit (MinStopAcceleration). Both stops are empty
   // without a device.

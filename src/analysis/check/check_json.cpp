@@ -134,17 +134,36 @@ Json ToJson(const FeltImpedance& felt) {
   return {{"requested", complex(felt.requested)}, {"rendered", complex(felt.rendered)}};
 }
 
+Json ToJson(const std::optional<AddedMass>& added) {
+  if (!added) return nullptr;
+  return {{"mass_kg", added->mass}, {"stable", added->stable}, {"at_5_hz", ToJson(added->moving)}};
+}
+
+// Returns the numbers of the surfaces of one kind.
+std::vector<std::size_t> NumbersOf(const ContactReport& r, Surface::Kind kind) {
+  std::vector<std::size_t> numbers;
+  for (const Surface& surface : r.surfaces)
+    if (surface.kind == kind) numbers.push_back(surface.number);
+  return numbers;
+}
+
 Json ToJson(const ContactReport& r) {
-  Json json = {{"fixtures", r.fixtures},
+  Json json = {{"fixtures", NumbersOf(r, Surface::Kind::kFixture)},
+               {"touches_table", !NumbersOf(r, Surface::Kind::kTable).empty()},
+               {"touches_floor", !NumbersOf(r, Surface::Kind::kFloor).empty()},
+               {"movable_objects", NumbersOf(r, Surface::Kind::kMovable)},
                {"normal", ToJson(r.wall.normal)},
                {"stiffness_n_m", r.wall.stiffness},
                {"damping_ns_m", r.wall.damping},
                {"yields", r.yields},
+               {"touched_at_start", r.at_start},
                {"stable", r.stable},
                {"largest_stable_stiffness_n_m", nullptr},
                {"oscillation_hz", nullptr},
                {"at_rest", ToJson(r.at_rest)},
-               {"at_5_hz", ToJson(r.moving)}};
+               {"at_5_hz", ToJson(r.moving)},
+               {"pushed", ToJson(r.pushed)},
+               {"held", ToJson(r.held)}};
   if (r.limit.reached) {
     json["largest_stable_stiffness_n_m"] = r.limit.stiffness;
     json["oscillation_hz"] = r.limit.frequency;
@@ -238,16 +257,32 @@ const schema::Words kWords = {
      {"margin_full_lead", "stability margin with a lead equal to the lag"},
      {"gain", "factor by which the hands' impedance may grow"},
      {"table", "margins for other hands"},
-     {"contacts", "predictions for contact with fixtures; empty: none can touch the object"},
-     {"fixtures", "numbers of the fixtures of one kind on one side of the object"},
-     {"normal", "unit vector out of the fixture, axes of W"},
+     {"contacts",
+      "predictions for contact of the object with its surroundings, one for each kind and side; "
+      "empty: nothing can touch the object"},
+     {"link_contacts",
+      "keys that let the cobot's links touch something; such contacts are not predicted"},
+     {"fixtures", "numbers of the fixtures"},
+     {"touches_table", "environment.table is one of the touched bodies"},
+     {"touches_floor", "the virtual floor is one of the touched bodies"},
+     {"movable_objects", "number of the movable object, which counts as one that cannot move"},
+     {"pushed",
+      "the loop if the object pushes this movable object and nothing else stops it; null: no "
+      "movable object"},
+     {"held",
+      "the loop while the object holds this movable object; null: no event pick_up names it"},
+     {"normal", "unit vector out of the touched body, axes of W"},
      {"stiffness_n_m", "stiffness [N/m]; of a contact: at each point, as simulated"},
      {"damping_ns_m", "damping at each point, as simulated [N·s/m]"},
-     {"yields", "the fixture has a stiffness; false: it is rigid"},
+     {"yields", "the scenario gives a stiffness of the fixtures; false: the engine's own contact"},
+     {"touched_at_start",
+      "the object touches it at the start; stable, at_rest, at_5_hz and impedance are then those "
+      "of "
+      "this contact with all its points"},
      {"stable", "the loop is stable (of a contact: the haptic loop in contact)"},
      {"largest_stable_stiffness_n_m",
-      "largest stiffness of such a wall for which the loop is stable [N/m], without damping if the "
-      "fixture is rigid; null: 1e6 or more"},
+      "largest stiffness of such a wall for which the loop is stable [N/m], without damping if "
+      "the scenario gives no stiffness; null: 1e6 or more"},
      {"oscillation_hz", "frequency at which the loop oscillates against a stiffer wall [Hz]"},
      {"at_rest", "what the hands feel at rest"},
      {"at_5_hz", "what the hands feel at 5 Hz"},
@@ -257,7 +292,8 @@ const schema::Words kWords = {
      {"rendered", "force over displacement that the arms render"},
      {"real_n_m", "real part: a stiffness [N/m]"},
      {"imaginary_n_m", "imaginary part: 2π·frequency times a damping [N/m]"}},
-    {"left", "right", "reach", "stop", "stability", "out_of_reach_s", "growth_rate", "gap_m"}};
+    {"left", "right", "reach", "stop", "stability", "out_of_reach_s", "growth_rate", "gap_m",
+     "pushed", "held"}};
 
 // Returns an example of a report that contains every member.
 CheckReport Example() {
@@ -279,9 +315,12 @@ CheckReport Example() {
   report.start.pairs.emplace_back();
   report.start.keep_out = {0};
   ContactReport contact;
-  contact.fixtures = {0};
+  contact.surfaces = {{Surface::Kind::kFixture, 0}, {Surface::Kind::kMovable, 0}};
+  contact.pushed.emplace();
+  contact.held.emplace();
   contact.spectrum.emplace_back();
   report.contacts = {contact};
+  report.link_contacts = {""};
   report.problems = report.warnings = {""};
   return report;
 }
@@ -316,6 +355,7 @@ std::string CheckJson(const CheckReport& report) {
   json["stability"] = report.stability ? ToJson(*report.stability) : Json(nullptr);
   json["contacts"] = Json::array();
   for (const ContactReport& contact : report.contacts) json["contacts"].push_back(ToJson(contact));
+  json["link_contacts"] = report.link_contacts;
   return json.dump(2) + "\n";
 }
 

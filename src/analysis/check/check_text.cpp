@@ -157,24 +157,20 @@ void AddStability(const StabilityReport& r, std::string* text) {
   }
 }
 
-// "0, 1 and 4"
-std::string Numbers(const std::vector<std::size_t>& numbers) {
-  std::string text;
-  for (std::size_t k = 0; k < numbers.size(); ++k)
-    text += (k == 0 ? "" : k + 1 == numbers.size() ? " and " : ", ") + std::to_string(numbers[k]);
-  return text;
-}
-
-void AddContact(const ContactReport& r, std::string* text) {
-  const Vector3& n = r.wall.normal;
-  AppendLine(text, "  %s %s, normal [%.2f, %.2f, %.2f]: %s",
-             r.fixtures.size() == 1 ? "fixture" : "fixtures", Numbers(r.fixtures).c_str(), n.x(),
-             n.y(), n.z(), r.stable ? "stable" : "UNSTABLE");
+void AddStiffness(const ContactReport& r, std::string* text) {
+  const double each = 1e-3 * r.wall.stiffness;
+  const Surface::Kind kind = r.surfaces[0].kind;
   if (r.yields)
-    AppendLine(text, "    stiffness        %.3g kN/m at each point", 1e-3 * r.wall.stiffness);
+    AppendLine(text, "    stiffness        %.3g kN/m at each point", each);
+  else if (kind == Surface::Kind::kTable || kind == Surface::Kind::kFloor)
+    AppendLine(text, "    stiffness        not given (in the simulation, %.3g kN/m at each point)",
+               each);
   else
     AppendLine(text, "    stiffness        rigid (in the simulation, %.3g kN/m at each point)",
-               1e-3 * r.wall.stiffness);
+               each);
+}
+
+void AddLimit(const ContactReport& r, std::string* text) {
   const char* instead = r.yields ? "" : ", as a spring without damping";
   if (!r.limit.reached)
     AppendLine(text, "    stable up to     more than %.3g kN/m%s", 1e-3 * kStiffestWall, instead);
@@ -182,24 +178,49 @@ void AddContact(const ContactReport& r, std::string* text) {
     AppendLine(text, "    stable up to     %.3g kN/m in all%s; oscillates at %.1f Hz above",
                1e-3 * r.limit.stiffness, instead, r.limit.frequency);
   else
-    AppendLine(text, "    stable up to     0 kN/m: oscillates at %.1f Hz even without a fixture",
+    AppendLine(text, "    stable up to     0 kN/m: oscillates at %.1f Hz even without contact",
                r.limit.frequency);
+}
+
+std::string MovingText(const FeltImpedance& felt) {
+  return Formatted("stiffness %.3g kN/m (requested %.3g), damping %.3g N·s/m (requested %.3g)%s",
+                   1e-3 * felt.rendered.real(), 1e-3 * felt.requested.real(),
+                   DampingOf(felt.rendered, kFeltFrequency),
+                   DampingOf(felt.requested, kFeltFrequency),
+                   felt.rendered.imag() < 0 ? " (the arms' lag feeds energy in)" : "");
+}
+
+void AddMass(const char* when, const AddedMass& added, std::string* text) {
+  AppendLine(text, "    %-16s %s with %.3g kg more; at %.0f Hz, %s", when,
+             added.stable ? "stable" : "UNSTABLE", added.mass, kFeltFrequency,
+             MovingText(added.moving).c_str());
+}
+
+void AddContact(const ContactReport& r, std::string* text) {
+  const Vector3& n = r.wall.normal;
+  AppendLine(text, "  %s%s, normal [%.2f, %.2f, %.2f]: %s", Printable(r.what).c_str(),
+             r.is_movable() ? " that cannot move"
+             : r.at_start   ? " as at the start"
+                            : "",
+             n.x(), n.y(), n.z(), r.stable ? "stable" : "UNSTABLE");
+  AddStiffness(r, text);
+  AddLimit(r, text);
   AppendLine(text, "    felt at rest     stiffness %.3g kN/m (requested %.3g)",
              1e-3 * r.at_rest.rendered.real(), 1e-3 * r.at_rest.requested.real());
-  AppendLine(text,
-             "    felt at %.0f Hz     stiffness %.3g kN/m (requested %.3g), damping %.3g N·s/m "
-             "(requested %.3g)%s",
-             kFeltFrequency, 1e-3 * r.moving.rendered.real(), 1e-3 * r.moving.requested.real(),
-             DampingOf(r.moving.rendered, kFeltFrequency),
-             DampingOf(r.moving.requested, kFeltFrequency),
-             r.moving.rendered.imag() < 0 ? " (the arms' lag feeds energy in)" : "");
+  AppendLine(text, "    felt at %.0f Hz     %s", kFeltFrequency, MovingText(r.moving).c_str());
+  if (r.pushed) AddMass("if pushed", *r.pushed, text);
+  if (r.held) AddMass("if held", *r.held, text);
 }
 
 void AddContacts(const CheckReport& report, std::string* text) {
-  AppendLine(text,
-             "\n"
-             "Contact: what the hands feel while the object touches a fixture, at one point");
+  AppendLine(text, "%s",
+             "\nContact: what the hands feel while the object touches something, at one point");
   for (const ContactReport& contact : report.contacts) AddContact(contact, text);
+  if (!report.link_contacts.empty())
+    AppendLine(text,
+               "  cobot's links    not predicted: contact because of %s. The prediction knows only "
+               "forces on the object. Simulate the scenario to see such a contact.",
+               Join(report.link_contacts).c_str());
 }
 
 void AddStop(const CheckReport& report, std::string* text) {
@@ -232,7 +253,7 @@ std::string CheckText(const CheckReport& report) {
   if (report.proposal) AddProposal(report, *report.proposal, &text);
   if (report.shift_proposal) AddProposal(report, *report.shift_proposal, &text);
   if (report.stability) AddStability(*report.stability, &text);
-  if (!report.contacts.empty()) AddContacts(report, &text);
+  if (!report.contacts.empty() || !report.link_contacts.empty()) AddContacts(report, &text);
   if (report.stop) AddStop(report, &text);
   AppendLine(&text, "%s", "");
   for (const std::string& warning : report.warnings)

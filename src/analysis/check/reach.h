@@ -130,6 +130,8 @@ class DeviceReach {
   std::vector<WatchedPair> pairs_;
 };
 
+inline constexpr double kPathStep = 0.02;  // usual interval of a path's samples [s]
+
 // Returns the paths that a task may take from the object's start. If the operator's script lets go
 // and grips again, there are two paths: either the object stays where the hands released it, or the
 // object returns to its start. Otherwise there is one.

@@ -101,7 +101,7 @@ class Work {
   struct Item {
     MapPoint* point;
     MapAxis axis;                       // of its value
-    const FixtureWall* wall = nullptr;  // for a point about a wall
+    const ContactWall* wall = nullptr;  // for a point about a wall
     const WallLine* line = nullptr;     // likewise
   };
 

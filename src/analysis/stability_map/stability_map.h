@@ -53,7 +53,7 @@ struct WallLine {
   std::vector<MapPoint> points;  // by hand mass [kg], ascending; `predicted` concerns the wall
 };
 struct WallPicture {
-  FixtureWall at;               // no fixtures: it is assumed
+  ContactWall at;               // no surfaces: it is assumed
   std::vector<WallLine> lines;  // ascending
 };
 

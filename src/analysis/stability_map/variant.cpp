@@ -98,7 +98,13 @@ MapBase BaseOf(const Scenario& scenario) {
   const double dt = 1 / scenario.rate;
   const LinearModel linear = world.Linearise();
   const LeadChoice choice = ChooseLead(HapticLoop(linear, scenario, dt), scenario, dt);
-  return {scenario, choice.lead, choice.lag, world.object_mass(), linear, world.state().object.X_W};
+  return {scenario,
+          choice.lead,
+          choice.lag,
+          world.object_mass(),
+          linear,
+          world.state().object.X_W,
+          world.LineariseWithoutContacts()};
 }
 
 double OwnValue(const MapBase& base, MapAxis axis) {

@@ -30,6 +30,7 @@ struct MapBase {
   double object_mass = 0;  // [kg]
   LinearModel world;       // of the virtual world, at the start
   Pose X_WO;               // of the object, at the start
+  LinearModel untouched;   // `world` without contacts
 };
 // Throws InputError for a scenario that cannot be run or has no arms (mode: direct).
 MapBase BaseOf(const Scenario& scenario);

@@ -27,9 +27,9 @@ std::string LeadText(double lead) { return Formatted("%.1f ms", 1000 * lead); }
 
 std::string MassText(double mass) { return Formatted("%.3g %s", mass, Mass().unit); }
 
-FixtureWall AssumedWall(const MapBase& base) {
+ContactWall AssumedWall(const MapBase& base) {
   const Scenario& s = base.scenario;
-  FixtureWall assumed;
+  ContactWall assumed;
   assumed.yields = true;
   assumed.wall.hand = *s.hands().begin();
   assumed.wall.p_DC = base.X_WO.p - base.X_WO * HandlePose(s, assumed.wall.hand).p;
@@ -158,10 +158,12 @@ std::vector<WallPicture> WallPicturesOf(const MapBase& base) {
       lines.back().points.back().value = mass;
     }
   }
-  std::vector<FixtureWall> walls = WallsOf(base.scenario, base.world, base.X_WO);
+  std::vector<ContactWall> walls = WallsOf(base.scenario, base.untouched, base.X_WO, false);
+  std::erase_if(
+      walls, [](const ContactWall& at) { return at.surfaces[0].kind == Surface::Kind::kMovable; });
   if (walls.empty()) walls.push_back(AssumedWall(base));
   std::vector<WallPicture> pictures;
-  for (const FixtureWall& at : walls) pictures.push_back({at, lines});
+  for (const ContactWall& at : walls) pictures.push_back({at, lines});
   return pictures;
 }
 
@@ -172,9 +174,9 @@ Variant WallVariantOf(const MapBase& base, const WallLine& line, double hand_mas
   return variant;
 }
 
-StableExtent PredictWall(const MapBase& base, const Variant& variant, const FixtureWall& at) {
+StableExtent PredictWall(const MapBase& base, const Variant& variant, const ContactWall& at) {
   const WallLimit limit =
-      StiffestStableWall(base.world, variant.scenario, variant.scenario.operator_.hand,
+      StiffestStableWall(base.untouched, variant.scenario, variant.scenario.operator_.hand,
                          variant.lead, at.Varying(), LoopModel::kExact);
   StableExtent extent;
   extent.stable_at_softest = limit.stiffness > 0;
@@ -184,17 +186,14 @@ StableExtent PredictWall(const MapBase& base, const Variant& variant, const Fixt
 }
 
 std::string WallInWords(const WallPicture& picture) {
-  const FixtureWall& at = picture.at;
+  const ContactWall& at = picture.at;
   const Wall wall = at.Varying();
   const std::string place =
       Formatted("normal [%.2f, %.2f, %.2f], ", wall.normal.x(), wall.normal.y(), wall.normal.z());
   const std::string damping =
       wall.damping > 0 ? Formatted("damping %.3g N·s/m", wall.damping) : "no damping";
-  if (at.fixtures.empty()) return "assumed wall below the object, " + place + damping;
-  std::vector<std::string> numbers;
-  for (const std::size_t i : at.fixtures) numbers.push_back(std::to_string(i));
-  return (numbers.size() == 1 ? "fixture " : "fixtures ") + Join(numbers, ", ") + ", " + place +
-         damping;
+  if (at.surfaces.empty()) return "assumed wall below the object, " + place + damping;
+  return PhraseOf(at.surfaces) + ", " + place + damping;
 }
 
 Plot WallPlot(const StabilityMap& map, std::size_t wall) {
@@ -253,8 +252,8 @@ void AddWalls(const StabilityMap& map, ReportPage* page) {
       "Against a stiffer wall, a disturbance grows: the arms cannot render it. The lines belong to "
       "delays of the arms' velocity loops, from the command to the motion.</p>\n<p>These values "
       "are <b>predicted</b> for small motions that stay in contact, at one point. The lead is the "
-      "one that a run with the delay of the line uses. A fixture that does not yield is replaced "
-      "by springs without damping. A test compares such predictions with simulations. "
+      "one that a run with the delay of the line uses. A body without a given stiffness is "
+      "replaced by springs without damping. A test compares such predictions with simulations. "
       "<code>predictor check</code> states smaller values, because it adds 1.5 ticks of delay as a "
       "reserve for real devices.</p>\n");
   for (std::size_t k = 0; k < map.walls.size(); ++k) {

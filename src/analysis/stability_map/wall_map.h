@@ -10,15 +10,15 @@
 namespace predictor {
 
 // Returns the pictures without their predictions. There is one picture for each wall that the
-// scenario's fixtures form or, without such walls, one picture for an assumed wall without damping
-// below the object.
+// scenario's fixtures and table form or, without such walls, one picture for an assumed wall
+// without damping below the object.
 std::vector<WallPicture> WallPicturesOf(const MapBase& base);
 
 // Returns the scenario with the delay and lead of a line, and with another mass of the hands [kg].
 Variant WallVariantOf(const MapBase& base, const WallLine& line, double hand_mass);
 
 // Predicts the stiffnesses of a wall, up to kStiffestWall, for which the loop is stable.
-StableExtent PredictWall(const MapBase& base, const Variant& variant, const FixtureWall& at);
+StableExtent PredictWall(const MapBase& base, const Variant& variant, const ContactWall& at);
 
 // Returns a description of a wall, for example "fixtures 0 and 2, normal [0, 0, 1], damping 60
 // N·s/m".

@@ -169,11 +169,30 @@ ContactLaw ContactLawOf(const FixtureSpec& fixture, double mass) {
   return {scaled / (swing * swing), 2 * scaled / fixture.time_constant, scaled * kContactImpedance};
 }
 
+namespace {
+
+// The engine's default properties of a contact. The impedance depends on the depth. The stiffness
+// of the reference is divided by the square of the largest impedance, and its damping by the
+// largest impedance (MuJoCo, "Modeling", "Solver parameters").
+constexpr double kDefaultTimeConstant = 0.02;  // [s]; the damping ratio is 1
+constexpr double kSmallestImpedance = 0.9, kLargestImpedance = 0.95;
+
+ContactLaw DefaultLaw(double mass, double impedance) {
+  const double scaled = mass / (1 - impedance), share = impedance / kLargestImpedance;
+  return {scaled * share * share / (kDefaultTimeConstant * kDefaultTimeConstant),
+          2 * scaled * share / kDefaultTimeConstant, scaled * impedance};
+}
+
+}  // namespace
+
+ContactLaw LightContactLaw(double mass) { return DefaultLaw(mass, kSmallestImpedance); }
+ContactLaw DeepContactLaw(double mass) { return DefaultLaw(mass, kLargestImpedance); }
+
 void AddSurroundings(mjSpec* spec, const EnvironmentSpec& environment) {
   mjsBody* world = mjs_findBody(spec, "world");
   if (environment.floor) {
     mjsGeom* floor = mjs_addGeom(world, nullptr);
-    mjs_setName(floor->element, "floor");
+    mjs_setName(floor->element, kFloorName);
     floor->type = mjGEOM_PLANE;
     SetVector(floor->size, {0, 0, 0.05});  // unlimited size; spacing of the grid
     SetContact(floor, true, environment.friction);

@@ -10,6 +10,8 @@
 
 namespace predictor {
 
+inline constexpr const char* kFloorName = "floor";  // of its shape
+
 // Adds floor, table and fixtures to the engine's world.
 void AddSurroundings(mjSpec* spec, const EnvironmentSpec& environment);
 

@@ -36,7 +36,7 @@ void AddContactsWithSurroundings(mjSpec* spec, const EnvironmentSpec& environmen
                                  const std::vector<std::string>& shapes,
                                  const std::optional<double>& friction) {
   const double on_floor = friction.value_or(environment.friction);
-  if (environment.floor) AddContactsOf(spec, shapes, {"floor"}, on_floor);
+  if (environment.floor) AddContactsOf(spec, shapes, {kFloorName}, on_floor);
   if (environment.table) AddContactsOf(spec, shapes, {"table"}, on_floor);
   for (std::size_t i = 0; i < environment.fixtures.size(); ++i)
     if (environment.fixtures[i].Touches("object"))

@@ -204,13 +204,16 @@ class MujocoEngine final : public Engine {
 
   Options options() const noexcept override {
     return {(model_->opt.disableflags & mjDSBL_FRICTIONLOSS) == 0, model_->opt.tolerance,
-            MovablesTouch(*scene_), CobotTouches(*scene_)};
+            MovablesTouch(*scene_), CobotTouches(*scene_),
+            (model_->opt.disableflags & mjDSBL_CONTACT) == 0};
   }
   void SetOptions(const Options& options) noexcept override {
-    if (options.coulomb_friction)
-      model_->opt.disableflags &= ~mjDSBL_FRICTIONLOSS;
-    else
-      model_->opt.disableflags |= mjDSBL_FRICTIONLOSS;
+    const auto enable = [this](bool on, int flag) {
+      model_->opt.disableflags =
+          on ? model_->opt.disableflags & ~flag : model_->opt.disableflags | flag;
+    };
+    enable(options.coulomb_friction, mjDSBL_FRICTIONLOSS);
+    enable(options.contacts, mjDSBL_CONTACT);
     model_->opt.tolerance = options.tolerance;
     SetMovablesTouch(*scene_, options.movables_touch);
     SetCobotTouches(*scene_, options.cobot_touches);
@@ -273,6 +276,7 @@ Contact MujocoEngine::contact(int i) const noexcept {
       contact.fixture >= 0 && scene_->fixture_yields[static_cast<std::size_t>(contact.fixture)];
   contact.keep_out =
       contact.fixture >= 0 && scene_->fixture_keeps_out[static_cast<std::size_t>(contact.fixture)];
+  contact.floor = from.geom[1 - moving] == scene_->floor;
   contact.movable = scene_->movable_of[static_cast<std::size_t>(other)];
   contact.body = scene_->movable_of[static_cast<std::size_t>(body)];
   if (IsLink(body)) contact.link = LinkName(body);

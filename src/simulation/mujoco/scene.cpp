@@ -232,6 +232,7 @@ void FindAddresses(Scene* scene, const Scenario& scenario, const RobotModel& cob
       mj_name2id(&model, mjOBJ_BODY, (kCobotPrefix + scenario.cobot.end_effector).c_str());
   scene->object = mj_name2id(&model, mjOBJ_BODY, kObjectName);
   scene->wrist_site = mj_name2id(&model, mjOBJ_SITE, kWristSite);
+  scene->floor = mj_name2id(&model, mjOBJ_GEOM, kFloorName);
   const int free_joint = mj_name2id(&model, mjOBJ_JOINT, kObjectJoint);
   if (free_joint >= 0) {
     scene->object_qpos = model.jnt_qposadr[free_joint];

@@ -39,6 +39,7 @@ struct Scene {
   int end_effector = -1;                       // body index
   int object = -1;                             // body index; the body's frame is O
   int wrist_site = -1;                         // of the wrist sensor; −1: none
+  int floor = -1;                              // shape; −1: none
   std::array<int, kHands> hand = {-1, -1};     // direct mode: point masses on the handles
   std::array<int, kMaxCobotJoints> qpos = {};  // address in qpos of RobotModel's joint j
   std::array<int, kMaxCobotJoints> dof = {};   // address in qvel of RobotModel's joint j
