@@ -29,9 +29,13 @@ namespace predictor {
 class StateArchive {
  public:
   static StateArchive ToSave(std::span<std::byte> to) { return {to.data(), to.size(), true}; }
-  // Returns an archive that only loads, from the bytes in `from`.
-  static StateArchive ToLoad(std::span<const std::byte> from) {
-    return {const_cast<std::byte*>(from.data()), from.size(), false};
+  // Returns an archive that only loads, from the bytes in `from`. With a `seed`, every random
+  // stream is loaded and then continues with other numbers, which depend on this seed.
+  static StateArchive ToLoad(std::span<const std::byte> from,
+                             std::optional<std::uint64_t> seed = std::nullopt) {
+    StateArchive archive = {const_cast<std::byte*>(from.data()), from.size(), false};
+    archive.seed_ = seed;
+    return archive;
   }
 
   // Saves or loads each field in turn. The archive does not use the heap and does not throw.
@@ -41,6 +45,8 @@ class StateArchive {
   }
 
   bool saves() const noexcept { return saves_; }
+  // Returns the seed for the random streams, or nothing if they continue as they were saved.
+  const std::optional<std::uint64_t>& seed() const noexcept { return seed_; }
   // Returns false if there were too few bytes or if the bytes did not describe this state. The
   // loaded state is then invalid.
   bool ok() const noexcept { return ok_; }
@@ -151,6 +157,7 @@ class StateArchive {
   bool saves_;
   std::size_t used_ = 0;
   bool ok_ = true;
+  std::optional<std::uint64_t> seed_;
 };
 
 }  // namespace predictor

@@ -51,9 +51,22 @@ class RandomStream {
     return r * cosine;
   }
 
+  // Continues with other numbers, which depend on `seed` and on the present state. The present
+  // state differs between streams, so that streams with the same seed remain independent.
+  void Reseed(std::uint64_t seed) {
+    std::uint64_t x = SplitMix(&seed);
+    for (auto& s : state_) {
+      x ^= s;
+      s = SplitMix(&x);
+    }
+    spare_ = 0;
+    has_spare_ = false;
+  }
+
   template <class A>
   void Archive(A& a) {
     a(state_, spare_, has_spare_);
+    if (a.seed()) Reseed(*a.seed());
   }
 
  private:

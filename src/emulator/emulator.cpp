@@ -172,8 +172,8 @@ std::size_t Emulator::SaveState(std::span<std::byte> to) noexcept {
   ArchiveState(archive, impl_->State());
   return archive.ok() ? archive.used() : 0;
 }
-void Emulator::LoadState(std::span<const std::byte> from) {
-  StateArchive archive = StateArchive::ToLoad(from);
+void Emulator::LoadState(std::span<const std::byte> from, std::optional<std::uint64_t> seed) {
+  StateArchive archive = StateArchive::ToLoad(from, seed);
   ArchiveState(archive, impl_->State());
   if (archive.ok() && archive.used() == from.size()) return;
   throw InputError("The saved state (" + std::to_string(from.size()) +

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -79,8 +80,11 @@ class Emulator {
   // saved state, which is at most kStateBytes, or 0 if `to` is too small. Does not use the heap.
   // Only the tick's thread may call this.
   std::size_t SaveState(std::span<std::byte> to) noexcept;
-  // Throws InputError if the bytes are not a state of this scenario and version.
-  void LoadState(std::span<const std::byte> from);
+  // Throws InputError if the bytes are not a state of this scenario and version. With a `seed`, the
+  // emulator continues from the same state with other random numbers, which depend on this seed:
+  // the noise, tremor and pace of the operator, the noise of the sensors, and the times of events
+  // that have not begun. Equal seeds give bit-identical runs.
+  void LoadState(std::span<const std::byte> from, std::optional<std::uint64_t> seed = std::nullopt);
 
   const TickRecord& record() const;
   RunState state() const;

@@ -85,6 +85,12 @@ EventSequence::EventSequence(const Scenario& scenario) {
   Reset();
 }
 
+Vector6 EventSequence::set_point_shift(std::size_t i) const {
+  Disturbance d;
+  events_[i].kind->disturb(*events_[i].parameters, 0, &d);
+  return d.set_point;
+}
+
 double EventSequence::longest_delay() const {
   double sum = 0;
   for (const Event& event : events_) sum += event.first.delay;
@@ -121,13 +127,20 @@ std::uint64_t EventSequence::Absent(std::uint16_t active, std::uint64_t absent,
 }
 
 void EventSequence::Reset() noexcept {
-  for (Event& event : events_) {
-    event.begun = event.ended = false;
-    event.earliest = event.trigger.after + event.trigger.window * event.random.Uniform();
-  }
   placed_ = false;
   time_ = 0;
   latest_ = 0;
+  for (Event& event : events_) {
+    event.begun = event.ended = false;
+    DrawTime(&event);
+  }
+}
+
+// The distribution of the time is uniform in the part of the window that has not passed yet.
+void EventSequence::DrawTime(Event* event) const noexcept {
+  const TriggerSpec& trigger = event->trigger;
+  const double passed = std::clamp(time_ - trigger.after, 0.0, trigger.window);
+  event->earliest = trigger.after + (passed + (trigger.window - passed) * event->random.Uniform());
 }
 
 bool EventSequence::Begins(const Event& event, const WorldState& world,
@@ -192,6 +205,9 @@ void EventSequence::Archive(StateArchive& a) noexcept {
   for (Event& event : events_)
     a(event.begun, event.ended, event.begin, event.random, event.earliest);
   a(object_start_, placed_, time_, latest_);
+  if (a.seed())
+    for (Event& event : events_)
+      if (!event.begun) DrawTime(&event);
   if (latest_ > std::size(kHazardKinds)) a.Fail();
 }
 

@@ -22,7 +22,8 @@ class EventSequence {
   double duration(std::size_t i) const { return events_[i].duration; }  // [s]; 0: until the end
   // Returns the number of the movable object that an event picks up, or −1 for none.
   int movable(std::size_t i) const { return events_[i].movable; }
-  double longest_delay() const;     // sum of all that events add [s]
+  Vector6 set_point_shift(std::size_t i) const;  // by which event i shifts it [m], [rad]
+  double longest_delay() const;                  // sum of all that events add [s]
   bool loosens_attachment() const;  // an event lets the object slip, break loose or be put down
   bool releases_object() const;     // an event opens the gripper
   bool picks_up() const;            // an event lets the object pick up a movable object
@@ -64,6 +65,7 @@ class EventSequence {
     bool begun = false, ended = false;
     double begin = 0;  // [s]
   };
+  void DrawTime(Event* event) const noexcept;
   void AddTo(Disturbance* d, const Event& event, double elapsed) const noexcept;
   bool Begins(const Event& event, const WorldState& world, const WorldInput& input) const noexcept;
 

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+
 #include "core/histogram.h"
 
 namespace predictor {
@@ -18,6 +21,38 @@ TEST(RandomStream, RepeatsForTheSameSeedAndUseOnly) {
   }
   EXPECT_EQ(equal_use, 0);
   EXPECT_EQ(equal_seed, 0);
+}
+
+TEST(RandomStream, ContinuesWithOtherNumbersAfterANewSeed) {
+  const auto after = [](const char* use, std::uint64_t seed) {
+    RandomStream stream(7, use);
+    stream.Normal();  // a second number is kept for later
+    stream.Reseed(seed);
+    return std::array{stream.Normal(), stream.Uniform(), stream.Normal()};
+  };
+  EXPECT_EQ(after("tremor", 1), after("tremor", 1));
+  EXPECT_NE(after("tremor", 1), after("tremor", 2));
+  EXPECT_NE(after("tremor", 1), after("noise", 1));
+  RandomStream fresh(7, "tremor");
+  fresh.Normal();
+  EXPECT_NE(after("tremor", 1)[0], fresh.Normal());
+}
+
+// The numbers of neighbouring seeds, and those of two streams with the same seed, are uncorrelated.
+// The correlation of n independent pairs has the standard deviation 1/sqrt(n).
+TEST(RandomStream, IsIndependentOfOtherSeedsAndStreams) {
+  const int n = 20000;
+  double seeds = 0, streams = 0;
+  for (int k = 0; k < n; ++k) {
+    RandomStream a(7, "tremor"), next(7, "tremor"), other(7, "noise");
+    const auto seed = static_cast<std::uint64_t>(k);
+    a.Reseed(seed), next.Reseed(seed + 1), other.Reseed(seed);
+    const double x = a.Normal();
+    seeds += x * next.Normal();
+    streams += x * other.Normal();
+  }
+  EXPECT_LT(std::abs(seeds / n), 4 / std::sqrt(n));
+  EXPECT_LT(std::abs(streams / n), 4 / std::sqrt(n));
 }
 
 TEST(RandomStream, NormalHasTheMomentsOfANormalDistribution) {

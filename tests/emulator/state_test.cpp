@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/error.h"
@@ -155,6 +156,70 @@ TEST(State, AnotherPressureOnTheHandleIsNoticed) {
   }
   EXPECT_GE(first, 3003U);
   EXPECT_LE(first, 3020U);
+}
+
+std::vector<TickRecord> RecordsAfter(const std::vector<std::byte>& state,
+                                     std::optional<std::uint64_t> seed, Emulator* emulator) {
+  emulator->LoadState(state, seed);
+  std::vector<TickRecord> records;
+  for (int k = 0; k < 1000; ++k) {
+    emulator->Tick();
+    records.push_back(emulator->record());
+  }
+  return records;
+}
+
+bool AreSame(const std::vector<TickRecord>& a, const std::vector<TickRecord>& b) {
+  return std::ranges::equal(a, b, SameTick);
+}
+
+TEST(ReseededState, TwoSeedsGiveTwoRunsAndOneSeedRepeatsItsRun) {
+  const Scenario scenario = LoadTestScenario("box_9kg");
+  Emulator emulator(scenario), other(scenario);
+  for (int k = 0; k < 3000; ++k) emulator.Tick(), AutoStart(&emulator);
+  ASSERT_EQ(emulator.state(), RunState::kRun);
+  const std::vector<std::byte> state = Save(&emulator);
+  const auto saved = RecordsAfter(state, std::nullopt, &emulator);
+  const auto one = RecordsAfter(state, 1, &emulator), two = RecordsAfter(state, 2, &emulator);
+  EXPECT_FALSE(AreSame(one, two));
+  EXPECT_FALSE(AreSame(one, saved));
+  EXPECT_TRUE(AreSame(RecordsAfter(state, 1, &emulator), one));
+  EXPECT_TRUE(AreSame(RecordsAfter(state, 1, &other), one));
+  EXPECT_TRUE(AreSame(RecordsAfter(state, std::nullopt, &other), saved));
+}
+
+// The random streams are the 9 of each hand, the pace, and the force and velocity sensors of two
+// arms. Each of them has four words of 8 bytes and a spare number. A byte keeps its value with a
+// probability of 1/256.
+TEST(ReseededState, EqualsTheSavedOneExceptForItsRandomStreams) {
+  Emulator emulator(LoadTestScenario("box_9kg"));
+  for (int k = 0; k < 3000; ++k) emulator.Tick(), AutoStart(&emulator);
+  const std::vector<std::byte> state = Save(&emulator);
+  emulator.LoadState(state, 5);
+  const std::vector<std::byte> reseeded = Save(&emulator);
+  ASSERT_EQ(reseeded.size(), state.size());
+  int changed = 0;
+  for (std::size_t k = 0; k < state.size(); ++k) changed += state[k] != reseeded[k];
+  const int streams = 2 * 9 + 1 + 2 * 2;
+  EXPECT_GT(changed, streams * 30);
+  EXPECT_LE(changed, streams * (32 + 8 + 1));
+}
+
+// Without noise, tremor and drift, no seed has an effect. Therefore a seed changes nothing else.
+TEST(ReseededState, ContinuesTheSameRunIfNothingIsRandom) {
+  Scenario scenario = LoadTestScenario("box_9kg");
+  HandSpec& hand = scenario.operator_.hand;
+  hand.force_noise = hand.force_noise_floor = hand.tremor_force = hand.speed_drift = 0;
+  scenario.rig.velocity_noise = 0;
+  for (ArmSpec* arm : {&*scenario.device.left, &*scenario.device.right})
+    arm->sensor.noise_force = arm->sensor.noise_torque = 0;
+  Emulator emulator(scenario);
+  for (int k = 0; k < 3000; ++k) emulator.Tick(), AutoStart(&emulator);
+  ASSERT_EQ(emulator.state(), RunState::kRun);
+  const std::vector<std::byte> state = Save(&emulator);
+  const auto saved = RecordsAfter(state, std::nullopt, &emulator);
+  EXPECT_TRUE(AreSame(RecordsAfter(state, 1, &emulator), saved));
+  EXPECT_TRUE(AreSame(RecordsAfter(state, 2, &emulator), saved));
 }
 
 TEST(State, SavingDoesNotAllocateAndFits) {

@@ -110,6 +110,56 @@ TEST(Events, HaveAnotherTimeAfterAReset) {
   EXPECT_NE(first, second);
 }
 
+// Loads the saved sequence with a new seed, and returns the time at which its event then begins
+// [s].
+double BeginsAfterLoading(const std::vector<std::byte>& state, std::uint64_t seed,
+                          const Scenario& s) {
+  EventSequence sequence(s);
+  StateArchive load = StateArchive::ToLoad(state, seed);
+  sequence.Archive(load);
+  EXPECT_TRUE(load.ok());
+  const WorldInput input = HandsOff(s);
+  for (int k = 290; k <= 610; ++k) {
+    WorldState world;
+    world.time = k * 0.01;
+    sequence.Update(world, input);
+    if (sequence.active() != 0) return world.time;
+  }
+  return -1;
+}
+
+// The state is saved at 3 s, when a quarter of the window has passed. The times of the new seeds
+// are uniformly distributed in the rest of the window, from 3 s to 6 s.
+TEST(Events, HaveAnotherTimeAfterANewSeed) {
+  Scenario s = RigidBox();
+  s.events = {Event("brakes_close", 2)};
+  s.events[0].trigger.window = 4;
+  EventSequence sequence(s);
+  WorldState world;
+  world.time = 3;
+  sequence.Update(world, HandsOff(s));
+  ASSERT_EQ(sequence.active(), 0);  // the scenario's own seed draws a later time
+  std::vector<std::byte> state(4096);
+  StateArchive save = StateArchive::ToSave(state);
+  sequence.Archive(save);
+  ASSERT_TRUE(save.ok());
+  state.resize(save.used());
+
+  double sum = 0, squares = 0;
+  const int seeds = 200;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    const double at = BeginsAfterLoading(state, seed, s);
+    ASSERT_GE(at, 3);
+    ASSERT_LE(at, 6.01);
+    sum += at, squares += at * at;
+  }
+  // A uniform distribution in [3 s, 6 s] has the standard deviation 3/√12 s.
+  const double mean = sum / seeds, deviation = std::sqrt(squares / seeds - mean * mean);
+  EXPECT_NEAR(mean, 4.5, 4 * 3 / std::sqrt(12.0 * seeds));
+  EXPECT_NEAR(deviation, 3 / std::sqrt(12.0), 0.12);
+  EXPECT_EQ(BeginsAfterLoading(state, 7, s), BeginsAfterLoading(state, 7, s));
+}
+
 TEST(Events, EndAfterTheirDurationAndDoNotRepeat) {
   Scenario s = RigidBox();
   s.events = {Event("wrong_payload", 0.1), Event("brakes_close", 0.2)};

@@ -2,19 +2,15 @@
 
 #include <algorithm>
 #include <atomic>
+#include <memory>
 
-#include "analysis/hazard_study/run_measures.h"
 #include "analysis/hazard_study/run_store.h"
 #include "analysis/json_line_store.h"
 #include "analysis/parallel.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/format.h"
-#include "core/norm.h"
-#include "emulator/emulator.h"
-#include "emulator/run_loop.h"
 #include "emulator/stop_reach.h"
-#include "evaluation/summary.h"
 #include "models/object_model.h"
 #include "scenario/scenario_io.h"
 
@@ -40,27 +36,6 @@ std::vector<std::string> Controller(const std::string& parameters) {
 StudyChoice Hazard(const std::string& name, const std::string& parameters = "") {
   const std::string trigger = Formatted("trigger: {after: %g, window: %g}", kAfter, kWindow);
   return {name, {"events=[{event: " + name + ", " + trigger + parameters + "}]"}};
-}
-
-// A cell with the scenario of its runs.
-struct Piece {
-  HazardCell cell;
-  Scenario scenario;
-  HazardRun first;  // the run with seed 1
-  std::string key;
-};
-
-// Returns by how much the true force of the hand that caused the stop exceeds `threshold` [N].
-double ExcessOf(const TickRecord& record, double threshold) {
-  const HandRecord& hand = record.hands[static_cast<std::size_t>(record.cause_hand)];
-  return std::max(0.0, Norm(hand.true_wrench.data()) - threshold);
-}
-
-ClearCrossing CrossingOf(const Scenario& scenario) {
-  std::array<double, kHands> resolved = {};
-  for (const int i : scenario.hands())
-    resolved[static_cast<std::size_t>(i)] = ResolvedForce(scenario.arm(i).sensor);
-  return {scenario.safety.force, resolved};
 }
 
 // Gives the controller the mass and the centre of mass of the load.
@@ -90,25 +65,56 @@ void CheckFiles(const std::vector<std::filesystem::path>& files) {
   for (const std::filesystem::path& file : files) Emulator(LoadScenario(file));
 }
 
-Piece PieceOf(const std::filesystem::path& file, const StudyChoice& controller,
-              const StudyChoice& hazard, double duration) {
-  Piece piece;
-  piece.cell.scenario = file.stem().string();
-  piece.cell.controller = controller.name;
-  piece.cell.hazard = hazard.name;
-  try {
-    piece.scenario = StudiedScenario(file, controller, hazard, duration);
-    // The first run serves as a sample of the program's behaviour, so that the study does not reuse
-    // runs of a program with different behaviour.
-    piece.first = RunWithHazard(piece.scenario, 1);
-    piece.key = HexHash(SaveScenario(piece.scenario) + TextOf(piece.first));
-  } catch (const InputError& error) {
-    piece.cell.impossible = error.what();
-    return piece;
+// The part of a study that its threads share.
+struct SharedStudy {
+  explicit SharedStudy(const HazardStudyOptions& o) : options(o), store(o.folder / "runs.csv") {}
+
+  const HazardStudyOptions& options;
+  HazardRunStore store;
+  std::atomic<std::size_t> done = 0;  // runs, including those that are impossible
+  std::atomic<int> kept = 0;          // runs of an earlier, interrupted study
+};
+
+// Executes the runs of a cell that are not stored yet.
+void AddRuns(HazardRuns* runs, const std::string& scenario, SharedStudy* study, HazardCell* cell) {
+  // The first run serves as a sample of the program's behaviour, so that the study does not reuse
+  // runs of a program with different behaviour.
+  const HazardRun first = runs->Run(1);
+  const std::string key = HexHash(scenario + TextOf(first));
+  const auto seeds = static_cast<std::uint64_t>(study->options.seeds);
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    HazardRun run;
+    if (study->store.Find(key, seed, &run)) {
+      ++study->kept;
+    } else {
+      run = seed == 1 ? first : runs->Run(seed);
+      study->store.Add(key, *cell, run);
+    }
+    cell->runs.push_back(run);
+    ++study->done;
   }
-  piece.cell.speed_cap = piece.scenario.safety.handle_speed;
-  piece.cell.travel_budget = StopOfArms(piece.scenario, MinStopAcceleration(piece.scenario)).way;
-  return piece;
+}
+
+HazardCell MakeCell(const std::filesystem::path& file, const StudyChoice& controller,
+                    const StudyChoice& hazard, SharedStudy* study) {
+  HazardCell cell;
+  cell.scenario = file.stem().string();
+  cell.controller = controller.name;
+  cell.hazard = hazard.name;
+  Scenario scenario;
+  std::unique_ptr<HazardRuns> runs;
+  try {
+    scenario = StudiedScenario(file, controller, hazard, study->options.duration);
+    runs = std::make_unique<HazardRuns>(scenario);
+  } catch (const InputError& error) {
+    cell.impossible = error.what();
+    study->done += static_cast<std::size_t>(study->options.seeds);
+    return cell;
+  }
+  cell.speed_cap = scenario.safety.handle_speed;
+  cell.travel_budget = StopOfArms(scenario, MinStopAcceleration(scenario)).way;
+  AddRuns(runs.get(), SaveScenario(scenario), study, &cell);
+  return cell;
 }
 
 }  // namespace
@@ -137,7 +143,7 @@ std::vector<StudyChoice> StudiedHazards() {
 
 Scenario StudiedScenario(const std::filesystem::path& file, const StudyChoice& controller,
                          const StudyChoice& hazard, double duration) {
-  std::vector<std::string> set = {Formatted("duration=%g", duration)};
+  std::vector<std::string> set = {Formatted("duration=%.9g", kAfter + duration)};
   for (const auto* more : {&controller.set, &hazard.set, &kCobotSafety})
     set.insert(set.end(), more->begin(), more->end());
   Scenario scenario = LoadScenario(file, set);
@@ -146,92 +152,24 @@ Scenario StudiedScenario(const std::filesystem::path& file, const StudyChoice& c
   return scenario;
 }
 
-HazardRun RunWithHazard(Scenario scenario, std::uint64_t seed) {
-  scenario.seed = seed;
-  HazardRun run;
-  run.seed = seed;
-  SummaryBuilder builder(scenario);
-  ClearCrossing crossing = CrossingOf(scenario);
-  CommandedSpeeds commanded(scenario);
-  Emulator emulator(scenario);
-  Simulate(&emulator, scenario.duration, [&](const TickRecord& record) {
-    builder.Add(record);
-    crossing.Add(record);
-    commanded.Add(record);
-    if (run.excess < 0 && record.cause == StopCause::kForce && record.cause_hand >= 0) {
-      run.excess = ExcessOf(record, scenario.safety.force);
-      run.clear_detection = crossing.duration(record.cause_hand);
-    }
-    if (record.ran == 0 || record.latest_event != 0) return;
-    for (const HandRecord& hand : record.hands)
-      if (hand.present != 0) run.before = std::max(run.before, Norm(hand.wrench.data()));
-  });
-  const Summary summary = builder.summary();
-  const EventSummary& event = summary.events.front();
-  const auto largest = [](const std::array<double, kHands>& values) {
-    return *std::max_element(values.begin(), values.end());
-  };
-  run.begin = event.begin.value_or(-1);
-  run.commanded = commanded.share();
-  run.after = largest(event.force);
-  run.torque = largest(event.torque);
-  run.speed = largest(event.speed);
-  run.until_stop = event.until_stop.value_or(-1);
-  if (summary.cobot_stop) run.cobot_stop = summary.cobot_stop->reason;
-  if (summary.stops.empty()) return run;
-  const StopSummary& stop = summary.stops.front();
-  run.cause = stop.cause;
-  run.detection = stop.cause == StopCause::kForce ? stop.detection.value_or(-1) : -1;
-  run.travel = stop.distance;
-  return run;
-}
-
 HazardStudy MakeHazardStudy(const HazardStudyOptions& options) {
   CheckFiles(options.scenarios);
   std::filesystem::create_directories(options.folder);
-  HazardRunStore store(options.folder / "runs.csv");
-  const auto seeds = static_cast<std::size_t>(options.seeds);
-  std::atomic<std::size_t> done = 0;
+  SharedStudy shared(options);
   const std::vector<StudyChoice> controllers = StudiedControllers(), hazards = StudiedHazards();
-  std::vector<Piece> pieces(options.scenarios.size() * controllers.size() * hazards.size());
-  const std::size_t count = pieces.size() * (seeds + 1);
-  const auto report = [&] {
-    options.progress(static_cast<double>(done) / static_cast<double>(count));
-  };
+  HazardStudy study;
+  study.cells.resize(options.scenarios.size() * controllers.size() * hazards.size());
+  const double count = static_cast<double>(study.cells.size()) * static_cast<double>(options.seeds);
   DoInParallel(
-      pieces.size(), options.workers,
+      study.cells.size(), options.workers,
       [&](std::size_t i) {
         const std::size_t c = i / hazards.size();
-        pieces[i] =
-            PieceOf(options.scenarios[c / controllers.size()], controllers[c % controllers.size()],
-                    hazards[i % hazards.size()], options.duration);
-        ++done;
+        study.cells[i] =
+            MakeCell(options.scenarios[c / controllers.size()], controllers[c % controllers.size()],
+                     hazards[i % hazards.size()], &shared);
       },
-      report);
-  for (Piece& piece : pieces)
-    if (piece.cell.impossible.empty()) piece.cell.runs.resize(seeds);
-
-  std::atomic<int> kept = 0;
-  DoInParallel(
-      pieces.size() * seeds, options.workers,
-      [&](std::size_t i) {
-        Piece& piece = pieces[i / seeds];
-        ++done;
-        if (!piece.cell.impossible.empty()) return;
-        HazardRun& run = piece.cell.runs[i % seeds];
-        const std::uint64_t seed = i % seeds + 1;
-        if (store.Find(piece.key, seed, &run)) {
-          ++kept;
-          return;
-        }
-        run = seed == 1 ? piece.first : RunWithHazard(piece.scenario, seed);
-        store.Add(piece.key, piece.cell, run);
-      },
-      report);
-
-  HazardStudy study;
-  study.kept = kept;
-  for (Piece& piece : pieces) study.cells.push_back(std::move(piece.cell));
+      [&] { options.progress(static_cast<double>(shared.done) / count); });
+  study.kept = shared.kept;
   WriteWholeFile(options.folder / "hazards.csv", HazardStudyCsv(study));
   WriteWholeFile(options.folder / "hazards.md", HazardStudyTables(study));
   return study;

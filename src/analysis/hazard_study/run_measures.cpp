@@ -35,9 +35,10 @@ CommandedSpeeds::CommandedSpeeds(const Scenario& s)
     if (s.mode == Mode::kDirect) return;
     const ArmSpec& spec = s.arm(i);
     const auto model = LoadArm(s, i);
-    arms_[static_cast<std::size_t>(i)] = std::make_unique<Arm>(
-        Arm{model, RobotData(*model), model->Frame(spec.end_effector, spec.handle.ToPose()),
-            HapticLoop::Lag(spec.loop, 1 / s.rate), JointVector::Zero(model->dof())});
+    arms_[static_cast<std::size_t>(i)] =
+        Arm{model, std::make_shared<RobotData>(*model),
+            model->Frame(spec.end_effector, spec.handle.ToPose()),
+            HapticLoop::Lag(spec.loop, 1 / s.rate), JointVector::Zero(model->dof())};
   }
 }
 
@@ -49,8 +50,8 @@ void CommandedSpeeds::Add(const TickRecord& record) {
     const JointVector q = Eigen::Map<const JointVector>(hand.q.data(), arm.model->dof()),
                       v = Eigen::Map<const JointVector>(hand.command.data(), arm.model->dof());
     if (record.state == RunState::kRun) {
-      arm.data.UpdateKinematics(*arm.model, q + arm.lag * arm.last, v);
-      const Twist V = arm.data.FrameTwist(*arm.model, arm.handle);
+      arm.data->UpdateKinematics(*arm.model, q + arm.lag * arm.last, v);
+      const Twist V = arm.data->FrameTwist(*arm.model, arm.handle);
       share_ =
           std::max({share_, V.head<3>().norm() / speed_cap_, V.tail<3>().norm() / rotation_cap_});
     }

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 
 #include "core/record.h"
 #include "models/robot.h"
@@ -41,7 +42,8 @@ class ClearCrossing {
 // Computes the handle speeds that were commanded in RUN, as shares of their caps. The speed is
 // computed at the posture in which the arm obeys the command. This posture is the measured posture,
 // advanced with the previous command by the lag of the arm's velocity loop. The cap on the handle's
-// speed applies to the speed that is computed in this way.
+// speed applies to the speed that is computed in this way. An object and its copies must be used by
+// the same thread.
 class CommandedSpeeds {
  public:
   // Throws InputError if an arm's model cannot be loaded.
@@ -54,13 +56,13 @@ class CommandedSpeeds {
  private:
   struct Arm {
     std::shared_ptr<const RobotModel> model;
-    RobotData data;
+    std::shared_ptr<RobotData> data;  // workspace, which copies of the object share
     FrameId handle;
     double lag;        // [s]
     JointVector last;  // the previous command [rad/s]
   };
-  std::array<std::unique_ptr<Arm>, kHands> arms_;  // null: absent
-  double speed_cap_, rotation_cap_;                // [m/s], [rad/s]
+  std::array<std::optional<Arm>, kHands> arms_;  // empty: absent
+  double speed_cap_, rotation_cap_;              // [m/s], [rad/s]
   double share_ = 0;
 };
 
