@@ -95,7 +95,8 @@ ControlledScene::ControlledScene(const Scenario& scenario, const EventSequence& 
       obstacles_(events.obstacles()),
       absent_(obstacles_) {
   for (int j = 0; j < robot_->dof(); ++j) friction_.push_back(carried_->JointFriction(j));
-  CheckEvents(events, scenario.object.attachment.joint, *controller_, standby_.get());
+  CheckEvents(events, scenario.object.attachment.joint, scenario.cobot.controller.type,
+              *controller_, standby_.get());
   if (obstacles_ != 0) RemoveFixtures();
 }
 

@@ -72,7 +72,9 @@ class Controller {
   // rotation vector [rad] in W. Does nothing for a controller without a Cartesian set-point. Does
   // not use the heap or a lock, and does not throw.
   virtual void ShiftSetPoint(const Vector6& shift) noexcept { static_cast<void>(shift); }
-  virtual bool has_set_point() const noexcept { return false; }
+  // Returns 1 for each axis of W along or about which a spring pulls the end-effector to the
+  // set-point, so that ShiftSetPoint has an effect, and 0 for the others.
+  virtual Vector6 set_point_axes() const noexcept { return Vector6::Zero(); }
   // Undoes Tune and ShiftSetPoint.
   virtual void ResetTuning() noexcept {}
   // Returns the outcome of the last Compute, and the status if the step was refused.

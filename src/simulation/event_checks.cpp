@@ -68,6 +68,15 @@ void CheckAttachmentEvent(const EventSequence& events, std::size_t i, JointType 
                               "the cobot. Remove the duration, or use object_slips.");
 }
 
+// Returns why no spring of the controller responds to a shift of the set-point, or "" if one does.
+std::string MissingForShift(const Vector6& shift, const std::string& type,
+                            const Controller& controller) {
+  const Vector6 axes = controller.set_point_axes();
+  if (!shift.cwiseProduct(axes).isZero(0)) return "";
+  return "the controller " + type + " has no spring that pulls the end-effector " +
+         (axes.isZero(0) ? "to a set-point in space" : "along or about an axis of this jump");
+}
+
 // Returns the part that an event needs and this cobot lacks, or "" if it lacks nothing.
 std::string MissingPart(HazardNeeds needs, const Controller& controller,
                         const Controller* standby) {
@@ -76,9 +85,6 @@ std::string MissingPart(HazardNeeds needs, const Controller& controller,
       if (controller.uses_wrist_sensor() || (standby != nullptr && standby->uses_wrist_sensor()))
         break;
       return "cobot.controller does not use a wrist sensor";
-    case HazardNeeds::kSetPoint:
-      if (controller.has_set_point()) break;
-      return "cobot.controller has no set-point that an event can shift";
     case HazardNeeds::kSprings:
       if (controller.has_springs()) break;
       return "cobot.controller has no springs and dampers";
@@ -93,12 +99,15 @@ std::string MissingPart(HazardNeeds needs, const Controller& controller,
 
 }  // namespace
 
-void CheckEvents(const EventSequence& events, JointType joint, const Controller& controller,
-                 const Controller* standby) {
+void CheckEvents(const EventSequence& events, JointType joint, const std::string& type,
+                 const Controller& controller, const Controller* standby) {
   for (std::size_t i = 0; i < events.size(); ++i) {
     const std::string path = "events." + std::to_string(i) + ".event";
     CheckAttachmentEvent(events, i, joint);
-    const std::string missing = MissingPart(events.kind(i).needs, controller, standby);
+    const HazardNeeds needs = events.kind(i).needs;
+    const std::string missing = needs == HazardNeeds::kSetPoint
+                                    ? MissingForShift(events.set_point_shift(i), type, controller)
+                                    : MissingPart(needs, controller, standby);
     if (missing.empty()) continue;
     throw InputError::At(
         path, Join({path, " is ", events.kind(i).name, ", which would have no effect, because ",

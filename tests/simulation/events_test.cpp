@@ -190,15 +190,75 @@ TEST(Hazards, WrongPayloadLiftsTheCobotByItsSpring) {
   EXPECT_NEAR(EndEffector(world).z() - before, 1.5 * kGravity / 500, 2e-4);
 }
 
-TEST(Hazards, SetPointJumpMovesTheCobotByTheJump) {
+// Returns the displacement of the end-effector 6 s after a jump of the set-point [m], [rad].
+Vector6 MotionAfterJump(const ControllerSpec& controller, const std::string& xyz,
+                        const std::string& rotation) {
   Scenario s = RigidBox();
-  s.events = {Event("set_point_jump", 0, {"xyz=[0, 0, 0.04]", "rotation=[0, 0, 0.1]"})};
+  s.cobot.controller = controller;
+  s.events = {Event("set_point_jump", 0, {"xyz=" + xyz, "rotation=" + rotation})};
   World world(s);
   const Pose before = world.state().end_effector.X_W;
   RunWith(&world, HandsOff(s), 6);
-  EXPECT_NEAR(EndEffector(world).z() - before.p.z(), 0.04, 2e-4);
-  const Vector3 turned = RotationError(world.state().end_effector.X_W.q, before.q);
-  EXPECT_NEAR(turned.z(), 0.1, 2e-3);
+  return PoseError(world.state().end_effector.X_W, before);
+}
+
+ControllerSpec ControllerWith(const std::string& type,
+                              const std::vector<std::string>& parameters = {}) {
+  ControllerSpec controller = {type, {}};
+  for (const std::string& p : parameters) controller.Set(p);
+  return controller;
+}
+
+// The springs lead the cobot to the new set-point, except along the axes of hybrid control whose
+// force is set.
+TEST(Hazards, SetPointJumpMovesTheCobotByTheJump) {
+  const ControllerSpec impedance = RigidBox().cobot.controller,
+                       admittance = ControllerWith(
+                           "admittance", {"virtual_stiffness={translation: [300, 300, 300], "
+                                          "rotation: [20, 20, 20]}"}),
+                       hybrid =
+                           ControllerWith("hybrid_force_position", {"set_force=[0, 0, 19.62]"});
+  for (const ControllerSpec& controller : {impedance, admittance}) {
+    const Vector6 moved = MotionAfterJump(controller, "[0, 0, 0.04]", "[0, 0, 0.1]");
+    EXPECT_NEAR(moved[2], 0.04, 5e-4) << controller.type;
+    EXPECT_NEAR(moved[5], 0.1, 3e-3) << controller.type;
+  }
+  const Vector6 moved = MotionAfterJump(hybrid, "[0.03, 0, 0.04]", "[0, 0, 0.1]");
+  EXPECT_NEAR(moved[0], 0.03, 1e-3);
+  EXPECT_LT(std::abs(moved[2]), 0.01);
+  EXPECT_NEAR(moved[5], 0.1, 3e-3);
+}
+
+// Gravity compensation with a virtual fixture keeps its orientation with a spring.
+TEST(Hazards, SetPointJumpTurnsControllersThatKeepAnOrientation) {
+  for (const char* type : {"load_sharing", "virtual_fixtures"}) {
+    const ControllerSpec controller = type == std::string("load_sharing")
+                                          ? ControllerWith(type, {"share=1", "object_mass=2"})
+                                          : ControllerWith(type, {"object_mass=2"});
+    EXPECT_NEAR(MotionAfterJump(controller, "[0, 0, 0]", "[0, 0, 0.1]")[5], 0.1, 3e-3) << type;
+  }
+}
+
+TEST(Hazards, SetPointJumpIsRefusedWhereNoSpringRespondsToIt) {
+  const auto error = [](const ControllerSpec& controller, const std::string& xyz) {
+    Scenario s = RigidBox();
+    s.cobot.controller = controller;
+    s.events = {Event("set_point_jump", 0, {"xyz=" + xyz})};
+    return ErrorOfEvents(s);
+  };
+  EXPECT_EQ(error(ControllerWith("admittance"), "[0, 0, 0.05]"),
+            "events.0.event is set_point_jump, which would have no effect, because the controller "
+            "admittance has no spring that pulls the end-effector to a set-point in space. Remove "
+            "the event, or change the cobot.");
+  EXPECT_EQ(
+      error(ControllerWith("hybrid_force_position", {"set_force=[0, 0, 19.62]"}), "[0, 0, 0.05]"),
+      "events.0.event is set_point_jump, which would have no effect, because the controller "
+      "hybrid_force_position has no spring that pulls the end-effector along or about an "
+      "axis of this jump. Remove the event, or change the cobot.");
+  EXPECT_NE(error(ControllerWith("joint_impedance"), "[0, 0, 0.05]").find("joint_impedance has no"),
+            std::string::npos);
+  EXPECT_EQ(error(RigidBox().cobot.controller, "[0, 0, 0.05]"), "");
+  EXPECT_NE(error(RigidBox().cobot.controller, "[0, 0, 0]").find("no effect"), std::string::npos);
 }
 
 // The spring already carries the weight of 2 kg. If the spring's stiffness becomes three times as
@@ -355,6 +415,15 @@ std::vector<Scenario> Disturbed() {
     all.push_back(RigidBox());
     all.back().cobot.standby_controller = ControllerSpec{"joint_impedance", {}};
     all.back().events = {Event(event, 0.05)};
+    all.back().events[0].duration = 0.1;
+  }
+  for (const char* type : {"admittance", "hybrid_force_position"}) {
+    all.push_back(RigidBox());
+    all.back().cobot.controller =
+        ControllerWith(type, {type == std::string("admittance")
+                                  ? "virtual_stiffness={translation: [300, 300, 300]}"
+                                  : "set_force=[0, 0, 19.62]"});
+    all.back().events = {Event("set_point_jump", 0.05, {"xyz=[0.03, 0, 0]"})};
     all.back().events[0].duration = 0.1;
   }
   for (const char* event : {"sensor_bias", "sensor_drift"}) {

@@ -119,6 +119,29 @@ TEST(MovingAdmittance, TakesOverWhereTheEndEffectorIs) {
   EXPECT_LT(Vector6::Map(robot.controller->memory().data()).norm(), 1e-9);
 }
 
+// A jump of the set-point by j changes only x_d. Without force, x then follows the critically
+// damped oscillator M ẍ + D ẋ + K (x − j) = 0 with ω = √(K/M): x = j (1 − (1 + ω t) exp(−ω t)).
+TEST(MovingAdmittance, JumpIsTheStepResponseOfTheVirtualSpring) {
+  ControlledRobot robot(
+      FlangeScene("admittance", {"virtual_mass=8", "damping_translation=80",
+                                 "virtual_stiffness={translation: [200, 200, 200]}"}));
+  robot.controller->Start(robot.Input(0));
+  const Vector6 jump = (Vector6() << 0.02, 0, -0.05, 0, 0, 0).finished();
+  robot.controller->ShiftSetPoint(jump);
+  EXPECT_NEAR(robot.Energy(0), 0.5 * 200 * jump.squaredNorm(), 1e-12);
+  const double dt = 1e-4, omega = std::sqrt(200.0 / 8);
+  for (int k = 1; k <= 20'000; ++k) {
+    robot.controller->Advance(robot.Input(0), dt);
+    if (k % 2500 != 0) continue;
+    const double t = k * dt, share = 1 - (1 + omega * t) * std::exp(-omega * t);
+    const Vector6 x = Vector6::Map(robot.controller->memory().data() + 6);
+    EXPECT_LT((x - share * jump).norm(), 2e-3 * jump.norm()) << t;
+  }
+  robot.controller->ResetTuning();
+  robot.controller->Start(robot.Input(0));
+  EXPECT_EQ(robot.Energy(0), 0);
+}
+
 // ---- hybrid force/position ---------------------------------------------------------------------
 
 // The torques are compared with the law, written axis by axis.

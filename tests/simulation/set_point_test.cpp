@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/error.h"
 
 namespace predictor {
@@ -58,6 +60,9 @@ TEST(SetPoint, PathIsTheIntegralOfTheTwist) {
     sum += h / 6 *
            (trajectory.At(t).V_W + 4 * trajectory.At(t + h / 2).V_W + trajectory.At(t + h).V_W);
     ASSERT_LT((trajectory.PathAt(t + h) - sum).norm(), 1e-9) << t;
+    Vector6 path = Vector6::Constant(NAN);
+    trajectory.At(t, &path);
+    ASSERT_EQ(path, trajectory.PathAt(t)) << t;
   }
 }
 

@@ -4,7 +4,8 @@
 //   M_d (V̇ − V̇_d) + D_d (V − V_d) + K_d (x − x_d) = F
 //
 // admittance_law.h describes F and the position loop. V_d is the twist of the set-point, and x_d is
-// the integral of V_d. Without a trajectory, both are 0.
+// the integral of V_d. Without a trajectory, both are 0. A jump of the set-point changes only x_d,
+// because the speed of a jump is not finite.
 #include "simulation/controllers/admittance_law.h"
 #include "simulation/controllers/controllers.h"
 #include "simulation/controllers/set_point.h"
@@ -41,20 +42,29 @@ class Admittance final : public AdmittanceLaw {
 
   // The energy is that of the virtual spring.
   double StoredEnergy(const ControllerInput& input) const noexcept override {
-    const Vector6 e = x() - set_point_.PathAt(input.time);
+    const Vector6 e = x() - PathAt(input.time);
     return 0.5 * e.dot(stiffness_.cwiseProduct(e));
+  }
+  void ShiftSetPoint(const Vector6& shift) noexcept override { jump_ = shift; }
+  Vector6 set_point_axes() const noexcept override { return StiffAxes(stiffness_); }
+  void ResetTuning() noexcept override { jump_.setZero(); }
+  void Archive(StateArchive& a) noexcept override {
+    AdmittanceLaw::Archive(a);
+    a(jump_);
   }
 
  private:
   Wrench Accelerating(const ControllerInput& input, const Wrench& F) noexcept override {
-    const FrameMotion d = set_point_.At(input.time);
+    Vector6 path;
+    const FrameMotion d = set_point_.At(input.time, &path);
     return F + mass_.cwiseProduct(d.A_W) - damping_.cwiseProduct(V() - d.V_W) -
-           stiffness_.cwiseProduct(x() - set_point_.PathAt(input.time));
+           stiffness_.cwiseProduct(x() - path - jump_);
   }
-  Vector6 PathAt(double time) const noexcept override { return set_point_.PathAt(time); }
+  Vector6 PathAt(double time) const noexcept override { return set_point_.PathAt(time) + jump_; }
 
   SetPointTrajectory set_point_;
   Vector6 mass_, damping_, stiffness_;  // M_d, D_d, K_d
+  Vector6 jump_ = Vector6::Zero();      // by ShiftSetPoint [m], [rad]
 };
 
 }  // namespace

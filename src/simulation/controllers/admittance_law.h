@@ -55,7 +55,7 @@ class AdmittanceLaw : public Controller {
   void Advance(const ControllerInput& input, double dt) noexcept final;
   void Compute(const ControllerInput& input, JointVector* torque) noexcept final;
   double StoredEnergy(const ControllerInput&) const noexcept override { return 0; }
-  void Archive(StateArchive& a) noexcept final { a(tare_); }
+  void Archive(StateArchive& a) noexcept override { a(tare_); }
 
  protected:
   // `own` is the number of values that the derived controller has in the memory. These values are 0

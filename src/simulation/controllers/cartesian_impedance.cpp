@@ -91,7 +91,7 @@ class CartesianImpedance final : public Controller {
   }
   bool has_springs() const noexcept override { return true; }
   void ShiftSetPoint(const Vector6& shift) noexcept override { jump_ = shift; }
-  bool has_set_point() const noexcept override { return true; }
+  Vector6 set_point_axes() const noexcept override { return StiffAxes(K_spec_); }
 
   void ResetTuning() noexcept override {
     K_ = K_spec_;
@@ -125,9 +125,7 @@ class CartesianImpedance final : public Controller {
  private:
   FrameMotion Target(double time) const noexcept {
     FrameMotion target = set_point_.At(time);
-    if (jump_.isZero(0)) return target;
-    target.X_W.p += jump_.head<3>();
-    target.X_W.q = RotationFromVector(jump_.tail<3>()) * target.X_W.q;
+    ShiftPose(jump_, &target.X_W);
     return target;
   }
 

@@ -61,6 +61,11 @@ class HybridForcePosition final : public WrenchControl {
 
   bool uses_wrist_sensor() const noexcept override { return true; }
   std::span<double> memory() noexcept override { return memory_; }
+  Vector6 set_point_axes() const noexcept override {
+    Vector6 axes = WrenchControl::set_point_axes();
+    axes.head<3>() = (free_.cwiseProduct(p_.stiffness).array() > 0).cast<double>();
+    return axes;
+  }
   void Start(const ControllerInput&) noexcept override { memory_.fill(0); }
 
   void Advance(const ControllerInput& input, double dt) noexcept override {

@@ -46,19 +46,22 @@ const SetPointTrajectory::Segment* SetPointTrajectory::SegmentAt(double t) const
   return segment;
 }
 
-Vector6 SetPointTrajectory::PathAt(double t) const noexcept {
-  const Segment* segment = SegmentAt(t);
-  if (segment == nullptr) return Vector6::Zero();
-  const double position = MinimumJerk(segment->Share(t));
-  Vector6 path = segment->before;
-  path.head<3>() += position * segment->translation;
-  path.tail<3>() += position * segment->rotation;
+Vector6 SetPointTrajectory::Segment::Path(double position) const noexcept {
+  Vector6 path = before;
+  path.head<3>() += position * translation;
+  path.tail<3>() += position * rotation;
   return path;
 }
 
-FrameMotion SetPointTrajectory::At(double t) const noexcept {
+Vector6 SetPointTrajectory::PathAt(double t) const noexcept {
+  const Segment* segment = SegmentAt(t);
+  return segment ? segment->Path(MinimumJerk(segment->Share(t))) : Vector6(Vector6::Zero());
+}
+
+FrameMotion SetPointTrajectory::At(double t, Vector6* path) const noexcept {
   FrameMotion motion;
   motion.X_W = start_;
+  if (path) path->setZero();
   const Segment* segment = SegmentAt(t);
   if (segment == nullptr) return motion;
   const double duration = segment->end - segment->start;
@@ -66,6 +69,7 @@ FrameMotion SetPointTrajectory::At(double t) const noexcept {
   const double position = MinimumJerk(s);
   const double speed = MinimumJerkRate(s) / duration;
   const double acceleration = 60 * s * (1 - s) * (1 - 2 * s) / (duration * duration);
+  if (path) *path = segment->Path(position);
   motion.X_W.p = segment->from.p + position * segment->translation;
   motion.X_W.q = (RotationFromVector(position * segment->rotation) * segment->from.q).normalized();
   motion.V_W << speed * segment->translation, speed * segment->rotation;

@@ -28,6 +28,18 @@ void Fields(V& v, SetPointParameters& p) {
          "roll, pitch, yaw [rad]"));
 }
 
+// Moves a set-point by `shift`: a translation [m] and a rotation vector [rad] in W.
+inline void ShiftPose(const Vector6& shift, Pose* X_W) noexcept {
+  if (shift.isZero(0)) return;
+  X_W->p += shift.head<3>();
+  X_W->q = RotationFromVector(shift.tail<3>()) * X_W->q;
+}
+
+// Returns 1 for each axis with a stiffness [N/m], [N·m/rad], and 0 for the others.
+inline Vector6 StiffAxes(const Vector6& stiffness) noexcept {
+  return (stiffness.array() > 0).cast<double>();
+}
+
 class SetPointTrajectory {
  public:
   // `start` is the set-point before the first waypoint, to which the waypoints are relative.
@@ -37,8 +49,8 @@ class SetPointTrajectory {
 
   // Returns the pose, the twist and the acceleration of the set-point at time t [s], in W. Between
   // waypoints, position and rotation vector follow 10 s³ − 15 s⁴ + 6 s⁵ (Flash & Hogan 1985). The
-  // rotation is about one axis of W.
-  FrameMotion At(double t) const noexcept;
+  // rotation is about one axis of W. If `path` is not null, it receives PathAt(t).
+  FrameMotion At(double t, Vector6* path = nullptr) const noexcept;
   // Returns the integral of the set-point's twist from the start to time t [m], [rad].
   Vector6 PathAt(double t) const noexcept;
 
@@ -50,6 +62,8 @@ class SetPointTrajectory {
     Vector3 rotation;     // rotation vector in W [rad]
     Vector6 before;       // sum of the translations and rotation vectors of the earlier segments
     double Share(double t) const noexcept;  // of the segment's time that has passed, from 0 to 1
+    // Returns the path at a share of the segment's displacement.
+    Vector6 Path(double position) const noexcept;
   };
   const Segment* SegmentAt(double t) const noexcept;  // the last that has begun, or null
 

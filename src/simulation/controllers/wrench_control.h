@@ -5,7 +5,7 @@
 //
 // k e keeps the orientation of the set-point (rotation vector e), and D damps every motion relative
 // to that of the set-point. The set-point rests at the start, unless the derived controller moves
-// it.
+// it or an event shifts it.
 #pragma once
 
 #include "simulation/controller.h"
@@ -54,12 +54,17 @@ class WrenchControl : public Controller {
  public:
   void Compute(const ControllerInput& input, JointVector* torque) noexcept final;
   double StoredEnergy(const ControllerInput& input) const noexcept final;
+  void ShiftSetPoint(const Vector6& shift) noexcept final { jump_ = shift; }
+  Vector6 set_point_axes() const noexcept override;
+  void ResetTuning() noexcept final { jump_.setZero(); }
+  void Archive(StateArchive& a) noexcept override { a(jump_); }
 
  protected:
   WrenchControl(const ControllerContext& context, const WrenchControlParameters& parameters)
       : p_(parameters), gravity_(context.gravity), X_start_(context.X_WE_start) {}
 
-  // Returns F, about E, in axes of W. `set_point` is the pose that SetPoint returns.
+  // Returns F, about E, in axes of W. `set_point` is the pose that SetPoint returns, after the
+  // shift by an event.
   virtual Wrench Command(const Pose& set_point, const Pose& X_WE, const Twist& V_WE) noexcept = 0;
   // Returns the potential energy of F [J] for a pose of the end-effector and a set-point.
   virtual double Potential(const Pose&, const Pose&) const noexcept { return 0; }
@@ -74,10 +79,13 @@ class WrenchControl : public Controller {
   double gravity() const noexcept { return gravity_; }
 
  private:
+  FrameMotion Target(double time) const noexcept;  // set-point including its shift
+
   WrenchControlParameters p_;
   double gravity_;  // [m/s²]
   Pose X_start_;
-  Jacobian J_;  // workspace
+  Vector6 jump_ = Vector6::Zero();  // by ShiftSetPoint [m], [rad]
+  Jacobian J_;                      // workspace
 };
 
 }  // namespace predictor::controllers
