@@ -7,6 +7,7 @@
 //   c++ -std=c++17 -O2 -shared -fPIC -I include examples/plugins/following_spring.cpp
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -27,14 +28,13 @@ class FollowingSpring {
     std::copy_n(config.X_WE_start, 3, start_.begin());
     for (int i = 0; i < config.parameter_count; ++i) {
       const std::string key = config.parameters[i].key;
-      const double value = std::stod(config.parameters[i].value);
       if (key == "stiffness")
-        stiffness_ = value;
+        stiffness_ = NumberOf(config.parameters[i]);
       else if (key == "yielding")
-        yielding_ = value;
+        yielding_ = NumberOf(config.parameters[i]);
       else
-        throw std::runtime_error("\"" + key +
-                                 "\" is not one of its parameters: stiffness, yielding.");
+        throw std::runtime_error("In cobot.controller.parameters, \"" + key +
+                                 "\" is not one of its parameters. Use stiffness or yielding.");
     }
     memory_.fill(0);
     std::copy_n(start_.begin(), 3, memory_.begin());
@@ -74,6 +74,14 @@ class FollowingSpring {
   }
 
  private:
+  static double NumberOf(const PredictorParameter& parameter) {
+    char* end = nullptr;
+    const double value = std::strtod(parameter.value, &end);
+    if (end != parameter.value && *end == '\0' && value >= 0 && std::isfinite(value)) return value;
+    throw std::runtime_error(std::string("In cobot.controller.parameters, ") + parameter.key +
+                             " is \"" + parameter.value + "\". Give a finite number from 0.");
+  }
+
   int dof_;
   double stiffness_ = 400;  // [N/m]
   double yielding_ = 0.01;  // [m/(N·s)]

@@ -10,6 +10,7 @@
  *   cc -std=c11 -O2 -shared -fPIC -I include examples/plugins/joint_impedance.c -o
  * joint_impedance.so
  */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,14 +24,27 @@ typedef struct {
   double damping_rate;                  /* d [1/s] */
 } JointImpedance;
 
-static int read_parameter(JointImpedance* self, const PredictorParameter* parameter) {
+/* Returns 0 for a wrong parameter, and writes the mistake, its place and the remedy to `error`. */
+static int read_parameter(JointImpedance* self, const PredictorParameter* parameter, char* error,
+                          size_t error_size) {
   double* to = strcmp(parameter->key, "joint_stiffness") == 0 ? &self->stiffness
                : strcmp(parameter->key, "damping_rate") == 0  ? &self->damping_rate
                                                               : NULL;
   char* end = NULL;
-  if (to == NULL) return 0;
+  if (to == NULL) {
+    snprintf(error, error_size,
+             "In cobot.controller.parameters, \"%s\" is not one of its parameters. Use "
+             "joint_stiffness or damping_rate.",
+             parameter->key);
+    return 0;
+  }
   *to = strtod(parameter->value, &end);
-  return end != parameter->value && *end == '\0' && *to >= 0;
+  if (end != parameter->value && *end == '\0' && *to >= 0 && isfinite(*to)) return 1;
+  snprintf(error, error_size,
+           "In cobot.controller.parameters, %s is \"%s\". Give a finite number from 0, such as "
+           "%s=100.",
+           parameter->key, parameter->value, parameter->key);
+  return 0;
 }
 
 static void* create(const PredictorControllerConfig* config, char* error, size_t error_size) {
@@ -41,12 +55,7 @@ static void* create(const PredictorControllerConfig* config, char* error, size_t
   self->damping_rate = 50;
   memcpy(self->posture, config->posture, sizeof self->posture);
   for (int i = 0; i < config->parameter_count; ++i) {
-    const PredictorParameter* parameter = &config->parameters[i];
-    if (read_parameter(self, parameter)) continue;
-    snprintf(error, error_size,
-             "\"%s=%s\" is not one of its parameters: joint_stiffness and damping_rate, numbers "
-             "from 0.",
-             parameter->key, parameter->value);
+    if (read_parameter(self, &config->parameters[i], error, error_size)) continue;
     free(self);
     return NULL;
   }

@@ -45,9 +45,15 @@ class JointImpedance:
         text = self.memory[TEXT:].split(b"\0")[0].decode()
         for word in text.split("\n")[0].split():
             key, _, value = word.partition("=")
-            if key not in ("joint_stiffness", "damping_rate") or not is_number_from_0(value):
+            if key not in ("joint_stiffness", "damping_rate"):
                 raise ValueError(
-                    f'"{word}" is not one of its parameters: joint_stiffness and damping_rate, numbers from 0.'
+                    f'In cobot.controller.parameters, "{key}" is not one of its parameters. '
+                    "Use joint_stiffness or damping_rate."
+                )
+            if not is_number_from_0(value):
+                raise ValueError(
+                    f'In cobot.controller.parameters, {key} is "{value}". '
+                    f"Give a finite number from 0, such as {key}=100."
                 )
             setattr(self, key.removeprefix("joint_"), float(value))
 

@@ -205,8 +205,6 @@ TEST(Plugin, WhatDoesNotFitIsRefusedWithPlaceAndRemedy) {
   ExpectError(Plugin("version"), key, "has version 4 of the controller interface");
   ExpectError(Plugin("long_memory"), key,
               "has a memory of 129 numbers; it must have from 0 to 128");
-  ExpectError(Plugin("joint_impedance", "rigidity=5"), key,
-              "refuses this scenario. \"rigidity=5\" is not one of its parameters");
   ExpectError(Plugin("joint_impedance", "5"), "cobot.controller.parameters",
               "Write each parameter as key=value");
   const test::TemporaryFolder folder;
@@ -232,8 +230,27 @@ TEST(Plugin, AProcessThatDoesNotFitIsRefusedWithPlaceAndRemedy) {
   ExpectError(test::ProcessOf("[no_such_program]"), key, "could not be started");
   ExpectError(Faulty("ends"), key, "ended before it answered (exit code 7)");
   ExpectError(Faulty("refuses"), key, "refuses this scenario. Not for today");
-  ExpectError(PythonExample("rigidity=5"), key, "is not one of its parameters");
   ExpectError(Faulty("nan", 0), "cobot.controller", "its program does not answer, or its torques");
+}
+
+// The examples state which parameter or value is wrong, where, and what to write instead.
+TEST(Plugin, ABadParameterOfAnExampleIsRefusedWithPlaceAndRemedy) {
+  const std::string library = "cobot.controller.library", command = "cobot.controller.command",
+                    place = "refuses this scenario. In cobot.controller.parameters, ";
+  const std::string unknown =
+      place + "\"rigidity\" is not one of its parameters. Use joint_stiffness or damping_rate.";
+  ExpectError(Plugin("joint_impedance", "rigidity=5"), library, unknown);
+  ExpectError(PythonExample("rigidity=5"), command, unknown);
+  for (const char* value : {"abc", "5x", "-1", "inf", "nan"}) {
+    const std::string wrong = place + "joint_stiffness is \"" + value +
+                              "\". Give a finite number from 0, such as joint_stiffness=100.";
+    ExpectError(Plugin("joint_impedance", std::string("joint_stiffness=") + value), library, wrong);
+    ExpectError(PythonExample(std::string("joint_stiffness=") + value), command, wrong);
+    ExpectError(Plugin("following_spring", std::string("yielding=") + value), library,
+                place + "yielding is \"" + value + "\". Give a finite number from 0.");
+  }
+  ExpectError(Plugin("following_spring", "rigidity=5"), library,
+              place + "\"rigidity\" is not one of its parameters. Use stiffness or yielding.");
 }
 
 // The result of a trial applies only to a library with exactly these bytes, and to the same
