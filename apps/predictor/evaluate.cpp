@@ -51,8 +51,25 @@ assessment::WorkPattern WorkOf(const EvaluateOptions& options) {
   return work;
 }
 
+// Returns what a comparison states about the design. Another system does not record its design.
+assessment::ComparedDesign DesignOf(const EvaluatedRun& run, const assessment::Assessment& result) {
+  assessment::ComparedDesign design;
+  if (run.safety) design.scenario = run.scenario;
+  design.object_mass = run.object_mass;
+  const Pose X_SW = result.setup.stance.X_WS.Inverse();
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < kHands; ++i) {
+    if (!result.hands[i]) continue;
+    sum += (X_SW * run.run.handles[i].p).z();
+    count += 1;
+  }
+  design.handle_height = sum / count;
+  return design;
+}
+
 assessment::Assessment Evaluate(const EvaluateOptions& options, const std::string& file,
-                                const std::vector<std::string>& tracks) {
+                                const std::vector<std::string>& tracks,
+                                assessment::ComparedDesign* design = nullptr) {
   std::vector<assessment::UserLimits> limits;
   for (const std::string& limit : options.limits)
     limits.push_back(assessment::ReadUserLimits(limit));
@@ -69,6 +86,7 @@ assessment::Assessment Evaluate(const EvaluateOptions& options, const std::strin
   progress.Finish();
   result.recording = run.file;
   result.participant = run.participant;
+  if (design) *design = DesignOf(run, result);
   return result;
 }
 
@@ -123,13 +141,17 @@ int EvaluateOne(const EvaluateOptions& options, std::vector<assessment::Lift>* l
   options.CheckWritable();
   options.RefuseToReplace(page);
   options.RefuseToReplace(options.csv);
-  const assessment::Assessment result = Evaluate(options, options.recording, options.tracks);
+  assessment::ComparedDesign of_this, of_other;
+  const assessment::Assessment result =
+      Evaluate(options, options.recording, options.tracks, &of_this);
   lifts->insert(lifts->end(), result.lifts.begin(), result.lifts.end());
   *minutes += result.duration / 60;
   std::string text = AssessmentText(result);
   std::optional<assessment::Comparison> comparison;
   if (!options.against.empty()) {
-    comparison = Compare(result, Evaluate(options, options.against, options.against_tracks));
+    comparison =
+        Compare(result, Evaluate(options, options.against, options.against_tracks, &of_other));
+    AddDesigns(of_this, of_other, &*comparison);
     text += ComparisonText(*comparison);
   }
   WriteWholeFile(page,

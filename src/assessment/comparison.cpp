@@ -137,11 +137,20 @@ Comparison Compare(const Assessment& a, const Assessment& b) {
       if (of_a.kind == of_b.kind) comparison.differences.push_back(DifferenceOf(of_a, of_b));
   constexpr double kSameLength = 0.1;
   if (std::abs(a.held - b.held) > kSameLength * std::max(a.held, b.held))
-    comparison.warning = Formatted(
+    comparison.warnings.push_back(Formatted(
         "The hands held the handles for %.1f s in %s and for %.1f s in %s. A run that ended early "
         "looks better than a complete run.",
-        a.held, Printable(comparison.name_a).c_str(), b.held, Printable(comparison.name_b).c_str());
+        a.held, Printable(comparison.name_a).c_str(), b.held,
+        Printable(comparison.name_b).c_str()));
   return comparison;
+}
+
+void AddDesigns(ComparedDesign a, ComparedDesign b, Comparison* comparison) {
+  a.name = comparison->name_a;
+  b.name = comparison->name_b;
+  comparison->designs = DesignDifferences(a, b);
+  if (const std::string warning = HandleHeightWarning(a, b); !warning.empty())
+    comparison->warnings.push_back(warning);
 }
 
 std::string ComparisonTitle(const Comparison& comparison) {
@@ -150,7 +159,10 @@ std::string ComparisonTitle(const Comparison& comparison) {
 
 std::string ComparisonText(const Comparison& comparison) {
   std::string text = "\n" + ComparisonTitle(comparison) + ", for the same person\n";
-  if (!comparison.warning.empty()) AppendLine(&text, "Warning: %s", comparison.warning.c_str());
+  for (const std::string& line : comparison.warnings)
+    AppendLine(&text, "Warning: %s", line.c_str());
+  if (!comparison.designs.empty()) text += kDesignsDiffer + std::string("\n");
+  for (const std::string& line : comparison.designs) AppendLine(&text, "  %s", line.c_str());
   const std::vector<ComparedRow> rows = RowsOf(comparison);
   std::array<std::size_t, 4> widths = {};
   for (const ComparedRow& row : rows) {
@@ -171,8 +183,14 @@ std::string ComparisonText(const Comparison& comparison) {
 
 std::string ComparisonHtml(const Comparison& comparison) {
   std::string html;
-  if (!comparison.warning.empty())
-    html += "<p class=\"warning\">Warning: " + EscapeMarkup(comparison.warning) + "</p>\n";
+  for (const std::string& line : comparison.warnings)
+    html += "<p class=\"warning\">Warning: " + EscapeMarkup(line) + "</p>\n";
+  if (!comparison.designs.empty()) {
+    html += std::string("<p>") + kDesignsDiffer + "</p>\n<ul>\n";
+    for (const std::string& line : comparison.designs)
+      html += "<li>" + EscapeMarkup(line) + "</li>\n";
+    html += "</ul>\n";
+  }
   std::vector<std::vector<std::string>> table;
   for (const ComparedRow& row : RowsOf(comparison))
     table.push_back({EscapeMarkup(row.name), EscapeMarkup(row.a), EscapeMarkup(row.b),

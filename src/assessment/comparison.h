@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "assessment/assessment.h"
+#include "assessment/design_differences.h"
 
 namespace predictor::assessment {
 
@@ -23,12 +24,16 @@ struct Comparison {
   std::string name_a, name_b;  // the same without their endings, and different
   std::vector<Difference> differences;
   std::vector<DamageResult> damage_a, damage_b;
-  std::string warning;  // why the runs can hardly be compared; empty if they can
+  std::vector<std::string> warnings;  // why the runs can hardly be compared
+  std::vector<std::string> designs;   // DesignDifferences; filled by AddDesigns
 };
 
 // Throws InputError if the bodies differ, because the difference would then not be due to the
 // designs alone.
 Comparison Compare(const Assessment& a, const Assessment& b);
+
+// Adds what the designs of the two runs differ in. The comparison sets the designs' names.
+void AddDesigns(ComparedDesign a, ComparedDesign b, Comparison* comparison);
 
 std::string ComparisonText(const Comparison& comparison);
 // Returns a chapter's title such as "light compared with heavy".

@@ -1,6 +1,7 @@
 #include "assessment/output.h"
 #include "assessment/safety/output.h"
 #include "core/json_schema.h"
+#include "core/text.h"
 
 namespace predictor::assessment {
 namespace {
@@ -162,7 +163,9 @@ Json ListOf(const std::vector<T>& list) {
 }
 
 Json ToJson(const Comparison& comparison) {
-  Json json = {{"recording", comparison.b}, {"warning", comparison.warning}};
+  Json json = {{"recording", comparison.b},
+               {"warning", Join(comparison.warnings, " ")},
+               {"designs", comparison.designs}};
   for (const Difference& d : comparison.differences)
     json["quantities"][d.kind->path] = {{"tail", NumberOrNull(d.a)},
                                         {"tail_of_other", NumberOrNull(d.b)},

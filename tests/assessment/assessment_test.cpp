@@ -256,6 +256,35 @@ TEST(Assessment, AComparisonNamesBothRunsAndIsTheFirstChapterOfThePage) {
             "light.person (first) compared with light.person (second)");
 }
 
+// The designs differ in the object's mass, a key, and by 32 cm in the height of the handles.
+TEST(Assessment, AComparisonStatesWhatTheDesignsDifferIn) {
+  Assessment light = Judge(5), heavy = Judge(40);
+  light.recording = "light.mcap";
+  heavy.recording = "heavy.mcap";
+  Comparison comparison = Compare(light, heavy);
+  const ComparedDesign a = {
+      .name = "", .scenario = PersonScenario(), .object_mass = 9, .handle_height = 1.01};
+  ComparedDesign b = a;
+  b.object_mass = 18;
+  b.handle_height = 1.33;
+  b.scenario->environment.friction = 0.25;
+  AddDesigns(a, b, &comparison);
+  const std::string text = ComparisonText(comparison), html = ComparisonHtml(comparison);
+  for (const char* words :
+       {"mass of the object: 9 kg in light, 18 kg in heavy",
+        "height of the handles at the start: 1.010 m in light, 1.330 m in heavy",
+        "environment.friction: ", "0.25 in heavy",
+        "Warning: The handles of heavy start 32 cm higher above the ground than those of light."}) {
+    EXPECT_NE(text.find(words), std::string::npos) << words;
+    EXPECT_NE(html.find(words), std::string::npos) << words;
+  }
+  b.handle_height = a.handle_height + 0.049;
+  EXPECT_EQ(HandleHeightWarning(a, b), "");
+  b.handle_height = a.handle_height - 0.051;
+  EXPECT_NE(HandleHeightWarning(a, b).find("5 cm lower"), std::string::npos);
+  EXPECT_TRUE(DesignDifferences(a, a).empty());
+}
+
 // ---- output -----------------------------------------------------------------------------------
 
 using Json = nlohmann::json;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "analysis/population/population.h"
+#include "assessment/design_differences.h"
 #include "core/format.h"
 #include "core/text.h"
 #include "evaluation/statistics_samples.h"
@@ -273,6 +274,8 @@ std::string PopulationPage(const PopulationStudy& study, const std::string& prog
   page.Paragraph(Formatted(
       "%zu simulated people with different bodies perform %zu designs. No real person took part.",
       study.people.size(), study.designs.size()));
+  for (const std::string& line : study.warnings)
+    page.Html("<p class=\"warning\">Warning: " + EscapeMarkup(line) + "</p>\n");
   page.Html(SummaryTable(study));
   page.Paragraph(
       "For each person's 95th percentile over time (5th percentile for balance), the table shows "
@@ -280,6 +283,13 @@ std::string PopulationPage(const PopulationStudy& study, const std::string& prog
       "\"Beyond\" shows the share of the people who exceed the limit. If the emulator stopped a "
       "run, only a bound of the person's value is known. The quantiles are those of Kaplan and "
       "Meier, and a quantile that is itself only a bound has the sign ≥ or ≤.");
+  if (!study.differences_of_designs.empty()) {
+    page.Paragraph(assessment::kDesignsDiffer);
+    std::string list;
+    for (const std::string& line : study.differences_of_designs)
+      list += "<li>" + EscapeMarkup(line) + "</li>\n";
+    page.Html("<ul>\n" + list + "</ul>\n");
+  }
   const bool has_heights = std::ranges::any_of(study.designs, [&](const PopulationDesign& design) {
     return ByHeight(study, design.scenario).size() > 1;
   });

@@ -9,6 +9,7 @@
 #include "analysis/json_line_store.h"
 #include "analysis/parallel.h"
 #include "analysis/population/run_json.h"
+#include "assessment/design_differences.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/format.h"
@@ -129,6 +130,27 @@ std::vector<Prepared> PrepareDesigns(const PopulationOptions& options, const Sam
   return designs;
 }
 
+assessment::ComparedDesign ComparedOf(const Prepared& prepared) {
+  return {.name = prepared.design.name,
+          .scenario = prepared.scenario,
+          .object_mass = prepared.object_mass,
+          .handle_height = prepared.design.height.value_or(0)};
+}
+
+// States what each design differs in from the first. Different heights of one scenario were
+// requested, so they give no warning.
+void DescribeDesigns(const std::vector<Prepared>& designs, PopulationStudy* study) {
+  const assessment::ComparedDesign first = ComparedOf(designs.front());
+  for (const Prepared& prepared : designs) {
+    const assessment::ComparedDesign other = ComparedOf(prepared);
+    for (const std::string& line : DesignDifferences(first, other))
+      study->differences_of_designs.push_back(line);
+    if (prepared.design.scenario == designs.front().design.scenario) continue;
+    if (const std::string warning = HandleHeightWarning(first, other); !warning.empty())
+      study->warnings.push_back(warning);
+  }
+}
+
 void WriteResults(const PopulationStudy& study, const PopulationOptions& options) {
   const std::filesystem::path& folder = options.folder;
   WriteWholeFile(folder / "persons.csv", PersonsCsv(study));
@@ -169,6 +191,7 @@ PopulationStudy MakePopulationStudy(const PopulationOptions& options) {
       },
       [&] { options.progress(static_cast<double>(done) / static_cast<double>(count)); });
   study.kept = kept;
+  DescribeDesigns(designs, &study);
   for (Prepared& prepared : designs) study.designs.push_back(std::move(prepared.design));
   Compare(&study);
   WriteResults(study, options);

@@ -101,6 +101,8 @@ struct PopulationStudy {
   std::vector<PopulationDesign> designs;
   std::vector<std::vector<DesignSummary>> summaries;  // [design][quantity]
   std::vector<PairedDifference> differences;          // for each pair a > b and each quantity
+  // What the designs differ in from the first design, and warnings about this.
+  std::vector<std::string> differences_of_designs, warnings;
   int kept = 0;  // runs that an earlier, interrupted study had finished
 };
 

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/population/population.h"
+#include "assessment/design_differences.h"
 #include "core/format.h"
 #include "core/json_schema.h"
 #include "core/text.h"
@@ -238,6 +239,10 @@ std::string PopulationText(const PopulationStudy& study) {
       "Each person's value is the 95th percentile over time (5th percentile for balance) for the "
       "nominal posture. For RULA and REBA, the value is the score that is exceeded for 5 % of the "
       "time.\n";
+  for (const std::string& line : study.warnings) AppendLine(&text, "Warning: %s", line.c_str());
+  if (!study.differences_of_designs.empty()) text += assessment::kDesignsDiffer + std::string("\n");
+  for (const std::string& line : study.differences_of_designs)
+    AppendLine(&text, "  %s", line.c_str());
   for (std::size_t i = 0; i < study.designs.size(); ++i) text += DesignText(study, i);
   text += DifferenceText(study, 0);
   text +=
