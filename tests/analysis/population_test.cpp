@@ -251,11 +251,18 @@ TEST(Output, JsonFitsItsSchemaAndTablesAreComplete) {
   PopulationStudy study = MadeUp(4, 5);
   study.designs[1].runs[2].cause = StopCause::kForce;
   study.designs[1].height.reset();
+  study.designs[1].runs[0].beyond_lifft = study.designs[1].runs[3].beyond_lifft = true;
   Compare(&study);
   const auto schema = nlohmann::json::parse(PopulationSchema());
   const auto json = nlohmann::json::parse(PopulationJson(study));
   ExpectDescribed(schema, json);
   EXPECT_EQ(json["designs"][1]["stopped"], 1);
+  EXPECT_EQ(json["designs"][0]["beyond_lifft"], 0);
+  EXPECT_EQ(json["designs"][1]["beyond_lifft"], 2);
+  for (const std::string& shown : {PopulationText(study), PopulationPage(study, "1")}) {
+    EXPECT_NE(shown.find("for 2 of 4 people, a load exceeds 100 N·m"), std::string::npos);
+    EXPECT_EQ(shown.find("people, a load exceeds"), shown.rfind("people, a load exceeds"));
+  }
   const auto lines = [](const std::string& text) { return std::ranges::count(text, '\n'); };
   const auto quantities = static_cast<std::ptrdiff_t>(StudyQuantities().size());
   EXPECT_EQ(lines(PersonsCsv(study)), 1 + 2 * 4);
@@ -269,6 +276,7 @@ TEST(RunJson, IsReadBackOrRefused) {
   using Json = nlohmann::ordered_json;
   PopulationRun run = MadeUp(1, 0).designs[0].runs[0], found;
   run.values[2] = std::nan("");
+  run.beyond_lifft = true;
   const std::string text = JsonOf(run).dump();
   const Json json = Json::parse(text);
   ASSERT_TRUE(ReadRun(json, &found));

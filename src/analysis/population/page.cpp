@@ -290,6 +290,9 @@ std::string PopulationPage(const PopulationStudy& study, const std::string& prog
       list += "<li>" + EscapeMarkup(line) + "</li>\n";
     page.Html("<ul>\n" + list + "</ul>\n");
   }
+  for (const PopulationDesign& design : study.designs)
+    if (const std::string beyond = BeyondLifftSentence(design); !beyond.empty())
+      page.Paragraph(beyond);
   const bool has_heights = std::ranges::any_of(study.designs, [&](const PopulationDesign& design) {
     return ByHeight(study, design.scenario).size() > 1;
   });

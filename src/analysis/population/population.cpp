@@ -80,6 +80,9 @@ PopulationRun Perform(Scenario scenario, double object_mass, const SampledPerson
   for (const assessment::WorksheetResult& w : a.worksheets)
     if (std::string(w.kind->name) == "RULA")
       std::copy_n(w.share.begin(), kRulaScores, run.rula_share.begin());
+  run.beyond_lifft = std::ranges::any_of(a.damage, [](const assessment::DamageResult& d) {
+    return d.tool == ergonomics::kLiftTool.name && d.outside();
+  });
   return run;
 }
 

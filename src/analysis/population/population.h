@@ -52,6 +52,7 @@ struct PopulationRun {
   // the whole run would have been at least as bad. NaN: no value, or no bound.
   std::vector<double> values;
   std::array<double, kRulaScores> rula_share = {};  // share of time at each score
+  bool beyond_lifft = false;  // a load is beyond LiFFT's range, so its damage is extrapolated
 };
 
 // A scenario with the handles at a given height.
@@ -71,6 +72,11 @@ struct Share {
   double value() const { return of > 0 ? static_cast<double>(count) / of : 0; }
 };
 Share ShareOf(int count, int of, int undecided = 0);
+
+// Returns the number of people whose damage by LiFFT is extrapolated.
+int BeyondLifft(const PopulationDesign& design);
+// Returns a sentence about these people, or "" if there are none.
+std::string BeyondLifftSentence(const PopulationDesign& design);
 
 // One quantity in one design. Values of stopped runs are censored observations. The quantiles are
 // those of Kaplan and Meier (CensoredQuantile). If a quantile is itself only a bound, `at_least`

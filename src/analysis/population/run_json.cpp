@@ -18,7 +18,8 @@ Json JsonOf(const PopulationRun& run) {
           {"cause", static_cast<int>(run.cause)},
           {"held_s", run.held},
           {"values", run.values},  // not finite: null
-          {"rula_share", run.rula_share}};
+          {"rula_share", run.rula_share},
+          {"beyond_lifft", run.beyond_lifft}};
 }
 
 bool ReadRun(const Json& json, PopulationRun* run) try {
@@ -31,6 +32,7 @@ bool ReadRun(const Json& json, PopulationRun* run) try {
   const Json& shares = json.at("rula_share");
   if (shares.size() != kRulaScores || read.values.size() != StudyQuantities().size()) return false;
   for (std::size_t i = 0; i < kRulaScores; ++i) read.rula_share[i] = shares[i];
+  read.beyond_lifft = json.at("beyond_lifft");
   if (cause < 0 || cause >= kStopCauses) return false;
   *run = std::move(read);
   return true;

@@ -27,6 +27,8 @@ const schema::Words kWords = {
      {"handle_height_m",
       "height of the point midway between the handles, above the ground at the start [m]"},
      {"stopped", "people whose run the emulator stopped"},
+     {"beyond_lifft",
+      "people of whom a load exceeds 100 N·m, so that their damage by LiFFT is extrapolated"},
      {"quantities", "results over the people, by quantity"},
      {"unit", "SI unit"},
      {"origin", "measured, modelled or standard"},

@@ -4,6 +4,8 @@
 #include <optional>
 
 #include "analysis/population/population.h"
+#include "core/format.h"
+#include "ergonomics/damage.h"
 #include "evaluation/statistics_samples.h"
 
 namespace predictor::population {
@@ -102,6 +104,19 @@ PairedDifference DifferenceOf(const PopulationStudy& study, std::size_t a, std::
 }
 
 }  // namespace
+
+int BeyondLifft(const PopulationDesign& design) {
+  return static_cast<int>(std::ranges::count(design.runs, true, &PopulationRun::beyond_lifft));
+}
+
+std::string BeyondLifftSentence(const PopulationDesign& design) {
+  const int people = BeyondLifft(design);
+  if (people == 0) return "";
+  return Formatted(
+      "%s: for %d of %zu people, a load exceeds %.0f N·m, beyond the range of LiFFT, so their "
+      "damage of the lower back is extrapolated.",
+      design.name.c_str(), people, design.runs.size(), ergonomics::kLargestLiftMoment);
+}
 
 Share ShareOf(int count, int of, int undecided) {
   Share share = {count, of, undecided};

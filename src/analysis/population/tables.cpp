@@ -95,6 +95,8 @@ std::string DesignText(const PopulationStudy& study, std::size_t design) {
                Shown(kind, s.median).c_str(), range.c_str(),
                kind.has_limit() ? Percent(s.beyond).c_str() : "");
   }
+  if (const std::string beyond = BeyondLifftSentence(d); !beyond.empty())
+    AppendLine(&text, "%s", beyond.c_str());
   return text;
 }
 
@@ -134,7 +136,7 @@ std::string PersonsCsv(const PopulationStudy& study) {
   for (const StudyQuantity& kind : StudyQuantities()) csv += std::string(",") + kind.path;
   for (std::size_t score = 1; score < kRulaScores; ++score)
     csv += Formatted(",rula_%zu_share", score);
-  csv += '\n';
+  csv += ",beyond_lifft\n";
   for (const PopulationDesign& design : study.designs)
     for (std::size_t i = 0; i < design.runs.size(); ++i) {
       const PopulationRun& run = design.runs[i];
@@ -151,6 +153,7 @@ std::string PersonsCsv(const PopulationStudy& study) {
       for (const double value : run.values) row.push_back(Cell(value));
       for (std::size_t score = 1; score < kRulaScores; ++score)
         row.push_back(Cell(run.rula_share[score]));
+      row.emplace_back(run.beyond_lifft ? "1" : "0");
       csv += Join(row, ",") + "\n";
     }
   return csv;
@@ -158,7 +161,8 @@ std::string PersonsCsv(const PopulationStudy& study) {
 
 std::string DesignsCsv(const PopulationStudy& study) {
   std::string csv =
-      "design,scenario,handle_height_m,stopped,quantity,unit,origin,people,known_as_bounds,median,"
+      "design,scenario,handle_height_m,stopped,beyond_lifft,quantity,unit,origin,people,known_as_"
+      "bounds,median,"
       "p5,p95,"
       "bounds,limit,beyond,undecided,beyond_low,beyond_high\n";
   for (std::size_t i = 0; i < study.designs.size(); ++i) {
@@ -170,6 +174,7 @@ std::string DesignsCsv(const PopulationStudy& study) {
                                       CsvCell(design.scenario),
                                       Cell(design.height.value_or(std::nan(""))),
                                       std::to_string(StopsOf(design)),
+                                      std::to_string(BeyondLifft(design)),
                                       kind.path,
                                       kind.unit.si,
                                       assessment::Name(kind.origin),
@@ -221,6 +226,7 @@ std::string PopulationJson(const PopulationStudy& study) {
                                {"scenario", design.scenario},
                                {"handle_height_m", design.height ? Json(*design.height) : Json()},
                                {"stopped", StopsOf(design)},
+                               {"beyond_lifft", BeyondLifft(design)},
                                {"quantities", quantities}});
   }
   json["differences"] = Json::array();
