@@ -92,12 +92,17 @@ void AddWork(CLI::App* evaluate, EvaluateOptions* o) {
       ->capture_default_str();
   AddOption(evaluate, "Work", "--grip-effort", &o->grip_effort, "NUMBER",
             "Effort with which the hands grip, from 0 (extremely easy) to 10 (extremely hard), for "
-            "DUET; no sensor measures it")
+            "DUET and the hand activity level; no sensor measures it")
       ->check(CLI::Range(0.0, 10.0));
+  AddOption(evaluate, "Work", "--fatigue-trial", &o->fatigue_trial, "SHARE,SECONDS",
+            "In a trial, the person held this share of the strength until exhaustion after this "
+            "time, for Peternel's model of fatigue, for example 0.5,60")
+      ->delimiter(',')
+      ->expected(2);
   AddRepeatable(
       evaluate, "Work", "--limits", &o->limits, "FILE.csv",
-      "Limits of postures, loads or muscles that you take from a standard, in the form of "
-      "assets/limits_template.csv (repeatable)");
+      "Limits of postures, loads, muscles or hand activity that you take from a standard, in "
+      "the form of assets/limits_template.csv (repeatable)");
   AddOption(evaluate, "Work", "--contact-limits", &o->contact_limits, "FILE.csv",
             "Limits of force on the body for unintended contact, in the form of "
             "assets/contact_limits_template.csv");

@@ -143,7 +143,6 @@ struct ReproduceCommandOptions : OutputOptions {
 
 // The person who held the handles in a recording.
 struct PersonOptions : OutputOptions {
-  std::string recording;
   std::vector<std::string> set;     // overrides of the recorded scenario, for body and stance
   std::vector<std::string> tracks;  // files with further measurements of the person
 };
@@ -159,6 +158,7 @@ struct EvaluateOptions : PersonOptions {
   std::string lifting = "1h";           // duration of the work with lifts
   std::string coupling = "good";        // of hands and handles
   std::optional<double> grip_effort;    // 0 … 10
+  std::vector<double> fatigue_trial;    // share of strength, and time [s]; empty: no trial
   std::string arm_model;                // MyoArm, folder or MJCF; empty: the built-in model
   std::vector<std::string> limits;      // files of limits that a run must keep
   std::string contact_limits;           // file of limits for unintended contact; empty: none
@@ -178,6 +178,7 @@ struct ContinueCommandOptions : OutputOptions {
 
 // Output of `export person`.
 struct ExportPersonOptions : PersonOptions {
+  std::string recording;
   std::string folder;  // empty: NAME.opensim
 };
 

@@ -1,5 +1,6 @@
 #include "evaluate.h"
 
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -10,6 +11,7 @@
 #include "assessment/output.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/format.h"
 #include "core/text.h"
 #include "evaluated_run.h"
 #include "muscles/myo_arm.h"
@@ -38,6 +40,21 @@ void AddSafety(const EvaluatedRun& run, const EvaluateOptions& options,
   result->safety = JudgeSafety(run.scenario, result->setup, *run.safety, judge);
 }
 
+// `trial` contains a share of strength and a time [s], or nothing.
+std::optional<ergonomics::TrialFatigue> TrialOf(const std::vector<double>& trial) {
+  if (trial.empty()) return {};
+  ergonomics::TrialFatigue result;
+  const double load = trial[0], time = trial[1];
+  if (!(load >= result.threshold && load <= 1))
+    throw InputError(Formatted("--fatigue-trial: The share of strength must be %g to 1, not %g.",
+                               result.threshold, load));
+  if (!(time > 0 && std::isfinite(time)))
+    throw InputError(Formatted("--fatigue-trial: The time must be above 0 s, not %g s.", time));
+  result.reference_load = load;
+  result.reference_time = time;
+  return result;
+}
+
 assessment::WorkPattern WorkOf(const EvaluateOptions& options) {
   using ergonomics::Coupling, ergonomics::LiftDuration;
   assessment::WorkPattern work{.repeated = options.repeated, .held = options.held};
@@ -48,6 +65,7 @@ assessment::WorkPattern WorkOf(const EvaluateOptions& options) {
                  : options.lifting == "2h" ? LiftDuration::kModerate
                                            : LiftDuration::kLong;
   work.grip_effort = options.grip_effort;
+  work.fatigue_trial = TrialOf(options.fatigue_trial);
   return work;
 }
 
@@ -129,23 +147,28 @@ assessment::PersonOfRun PersonIn(const std::string& file, double duration,
 
 namespace {
 
-std::string StemOf(const std::string& recording) {
-  return std::filesystem::path(recording).replace_extension("").filename().string();
+std::string WithoutEnding(const std::string& recording) {
+  return std::filesystem::path(recording).replace_extension("").string();
 }
 
-// Adds the lifts and the minutes of the recording.
-int EvaluateOne(const EvaluateOptions& options, std::vector<assessment::Lift>* lifts,
-                double* minutes) {
-  const std::string stem = std::filesystem::path(options.recording).replace_extension("").string();
-  const std::string page = options.page.empty() ? stem + ".person.html" : options.page;
-  options.CheckWritable();
-  options.RefuseToReplace(page);
-  options.RefuseToReplace(options.csv);
+std::string StemOf(const std::string& recording) {
+  return std::filesystem::path(WithoutEnding(recording)).filename().string();
+}
+
+// The files for the results of one recording. "": no file.
+struct ResultFiles {
+  std::string page, csv, json;
+};
+
+assessment::RecordedLifts EvaluateOne(const EvaluateOptions& options, const std::string& recording,
+                                      const ResultFiles& files) {
+  OutputOptions output = options;
+  output.json = files.json;
+  output.CheckWritable();
+  output.RefuseToReplace(files.page);
+  output.RefuseToReplace(files.csv);
   assessment::ComparedDesign of_this, of_other;
-  const assessment::Assessment result =
-      Evaluate(options, options.recording, options.tracks, &of_this);
-  lifts->insert(lifts->end(), result.lifts.begin(), result.lifts.end());
-  *minutes += result.duration / 60;
+  const assessment::Assessment result = Evaluate(options, recording, options.tracks, &of_this);
   std::string text = AssessmentText(result);
   std::optional<assessment::Comparison> comparison;
   if (!options.against.empty()) {
@@ -154,12 +177,13 @@ int EvaluateOne(const EvaluateOptions& options, std::vector<assessment::Lift>* l
     AddDesigns(of_this, of_other, &*comparison);
     text += ComparisonText(*comparison);
   }
-  WriteWholeFile(page,
+  WriteWholeFile(files.page,
                  AssessmentPage(result, PREDICTOR_VERSION, comparison ? &*comparison : nullptr));
-  if (!options.csv.empty()) WriteWholeFile(options.csv, AssessmentCsv(result));
-  options.Write(text + "Wrote " + page + ". Open it in a browser.\n",
-                AssessmentJson(result, comparison ? &*comparison : nullptr));
-  return kFinished;
+  if (!files.csv.empty()) WriteWholeFile(files.csv, AssessmentCsv(result));
+  output.Write(text + "Wrote " + files.page + ". Open it in a browser.\n",
+               AssessmentJson(result, comparison ? &*comparison : nullptr));
+  return {result.recording, result.participant ? result.participant->pseudonym : "",
+          result.duration / 60, result.lifts};
 }
 
 // Throws InputError if an option belongs to one recording, or if results would get the same name.
@@ -177,37 +201,47 @@ void RefuseForSeveral(const EvaluateOptions& options) {
                        "name, too. Rename one of the recordings.");
 }
 
-// Returns the options for one of several recordings. The outputs of the options are folders.
-EvaluateOptions OptionsFor(const std::string& recording, const EvaluateOptions& options) {
-  EvaluateOptions one = options;
-  one.recording = recording;
-  const auto name_in = [&](const char* ending, std::string* folder) {
-    if (folder->empty()) return;
-    std::filesystem::create_directories(*folder);
-    *folder = std::filesystem::path(*folder) / (StemOf(recording) + ".person" + ending);
-  };
-  name_in(".html", &one.page);
-  name_in(".csv", &one.csv);
-  name_in(".json", &one.json);
-  return one;
+// Returns the file NAME in a folder, which is created, or "" without a folder.
+std::string FileIn(const std::string& folder, const std::string& name) {
+  if (folder.empty()) return "";
+  std::filesystem::create_directories(folder);
+  return std::filesystem::path(folder) / name;
+}
+
+// Returns the files for one of several recordings. The outputs of the options are folders.
+ResultFiles FilesFor(const std::string& recording, const EvaluateOptions& options) {
+  const std::string stem = StemOf(recording) + ".person";
+  const std::string beside = WithoutEnding(recording) + ".person.html";
+  return {options.page.empty() ? beside : FileIn(options.page, stem + ".html"),
+          FileIn(options.csv, stem + ".csv"), FileIn(options.json, stem + ".json")};
+}
+
+int EvaluateSeveral(const EvaluateOptions& options) {
+  RefuseForSeveral(options);
+  OutputOptions output = options;
+  output.json = FileIn(options.json, "lifting_job.json");
+  const std::string csv = FileIn(options.csv, "lifting_job.csv");
+  output.CheckWritable();
+  output.RefuseToReplace(csv);
+  std::vector<assessment::RecordedLifts> lifts;
+  for (const std::string& recording : options.recordings)
+    lifts.push_back(EvaluateOne(options, recording, FilesFor(recording, options)));
+  if (!csv.empty()) WriteWholeFile(csv, assessment::LiftingJobCsv(lifts));
+  const assessment::LiftingJob job = assessment::JobOf(lifts);
+  if (job.lifts > 1)
+    output.Print("\nIf one person does the work of all recordings: " + Sentence(job) + "\n");
+  output.WriteJson(assessment::LiftingJobJson(lifts));
+  return kFinished;
 }
 
 }  // namespace
 
 int EvaluateCommand(const EvaluateOptions& options) {
-  std::vector<assessment::Lift> lifts;
-  double minutes = 0;
-  if (options.recordings.size() == 1) {
-    EvaluateOptions one = options;
-    one.recording = options.recordings.front();
-    return EvaluateOne(one, &lifts, &minutes);
-  }
-  RefuseForSeveral(options);
-  for (const std::string& recording : options.recordings)
-    EvaluateOne(OptionsFor(recording, options), &lifts, &minutes);
-  const assessment::LiftingJob job = assessment::JobOf(lifts, minutes);
-  if (job.lifts > 1)
-    options.Print("\nIf one person does the work of all recordings: " + Sentence(job) + "\n");
+  if (options.recordings.size() > 1) return EvaluateSeveral(options);
+  const std::string& recording = options.recordings.front();
+  EvaluateOne(options, recording,
+              {options.page.empty() ? WithoutEnding(recording) + ".person.html" : options.page,
+               options.csv, options.json});
   return kFinished;
 }
 

@@ -1,10 +1,13 @@
 #include "evaluated_run.h"
 
+#include <memory>
 #include <span>
+#include <utility>
 
 #include "assessment/measured_head.h"
 #include "core/error.h"
 #include "models/object_model.h"
+#include "models/robot.h"
 #include "models/urdf.h"
 #include "progress.h"
 #include "recorded_run.h"
@@ -17,13 +20,15 @@
 namespace predictor {
 namespace {
 
-struct SceneModels {
-  assessment::SceneMasses masses;
-  std::vector<OutlinePoint> outline;  // of the object
+// What the recorded models of the virtual scene contain.
+struct RecordedScene {
+  std::optional<assessment::SceneMasses> masses;  // empty: not known
+  std::vector<OutlinePoint> outline;              // of the object; empty: not known
+  std::shared_ptr<const RobotModel> cobot;        // null: not known
 };
 
-// Returns no models if the recorded models cannot be read, and prints the reason.
-std::optional<SceneModels> ModelsOf(const RecordingHeader& header) {
+// Returns nothing known if the recorded models cannot be read, and prints the reason.
+RecordedScene SceneOf(const RecordingHeader& header) {
   try {
     const RestoredScenario restored(header);
     const Scenario& scenario = restored.Get();
@@ -31,11 +36,11 @@ std::optional<SceneModels> ModelsOf(const RecordingHeader& header) {
     const UrdfModel urdf = ReadUrdf(ResolveModelPath(cobot.model, scenario.folder()),
                                     cobot.remove_links, scenario.folder());
     const ObjectModel object = LoadObject(scenario.object, scenario.folder());
-    return SceneModels{{.cobot = urdf.MovingMass(), .object = object.mass}, OutlineOf(object)};
+    return {assessment::SceneMasses{.cobot = urdf.MovingMass(), .object = object.mass},
+            OutlineOf(object), RobotModel::Build(urdf, cobot.base.ToPose())};
   } catch (const InputError& error) {
-    TheScreen().Print(
-        std::string("The masses of the virtual scene and the shape of its object are not known: ") +
-        error.what());
+    TheScreen().Print(std::string("The models of the virtual scene are not known: ") +
+                      error.what());
     return {};
   }
 }
@@ -93,9 +98,9 @@ EvaluatedRun OpenTicks(const std::string& file, const PersonOptions& options) {
   RefuseUnknown(run.scenario, file);
   run.participant = ParticipantIn(header.labels);
   assessment::SampleCollector samples(run.scenario);
-  const std::optional<SceneModels> models = ModelsOf(header);
-  if (models) run.masses = models->masses;
-  run.safety.emplace(run.scenario, models ? models->outline : std::vector<OutlinePoint>());
+  RecordedScene scene = SceneOf(header);
+  run.masses = scene.masses;
+  run.safety.emplace(run.scenario, std::move(scene.outline), std::move(scene.cobot));
   ReadTicks(&reader, "Reading", options.quiet, [&](const TickRecord& record) {
     samples.Add(record);
     run.safety->Add(record);

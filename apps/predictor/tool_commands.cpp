@@ -179,6 +179,9 @@ void AddSchema(CLI::App* app, Request* r) {
            SummarySchema);
   AddPrint(schema, "Commands", "evaluation", "Schema of the evaluation of a person (--json)", r,
            assessment::AssessmentSchema);
+  AddPrint(schema, "Commands", "lifting-job",
+           "Schema of the lifts of several recordings (evaluate --json)", r,
+           assessment::LiftingJobSchema);
   AddPrint(schema, "Commands", "continuation", "Schema of the continuation of a run (--json)", r,
            ContinuationSchema);
   AddPrint(schema, "Commands", "population", "Schema of a population study (--json)", r,

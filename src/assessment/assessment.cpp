@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "assessment/person_chain.h"
 #include "core/error.h"
@@ -12,8 +11,6 @@
 
 namespace predictor::assessment {
 namespace {
-
-constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
 // Returns the smallest score that is exceeded during at most 5 % of the time. The element
 // share[score] is the share of time with that score.
@@ -42,7 +39,7 @@ std::vector<double> OfEachPerson(const Table& table,
     std::vector<double> values;
     for (const auto& row : table) values.push_back(row[person]);
     values = KnownOf(std::move(values));
-    results.push_back(values.empty() ? kNotKnown : of_time(values));
+    results.push_back(values.empty() ? kUnknownValue : of_time(values));
   }
   return results;
 }
@@ -55,8 +52,8 @@ void AddIntervals(const SampledChain& sampled, std::span<const PersonSample> sam
     for (const Frame& frame : sampled.frames[k])
       row.push_back(result->kind->of({frame, samples[sampled.at[k]]}));
     const auto interval = IntervalOfKnown(row);
-    result->low.push_back(interval ? interval->low : kNotKnown);
-    result->high.push_back(interval ? interval->high : kNotKnown);
+    result->low.push_back(interval ? interval->low : kUnknownValue);
+    result->high.push_back(interval ? interval->high : kUnknownValue);
   }
   result->mean_interval =
       IntervalOfKnown(OfEachPerson(table, [](const std::vector<double>& x) { return Mean(x); }));
@@ -70,7 +67,7 @@ void AddIntervals(const SampledChain& sampled, std::span<const PersonSample> sam
 // Uses only the times that have a value. If no time has a value, the results are not a number.
 void SummariseOverTime(QuantityResult* result) {
   std::vector<double> values = KnownOf(result->values);
-  if (values.empty()) values.push_back(kNotKnown);
+  if (values.empty()) values.push_back(kUnknownValue);
   result->mean = Mean(values);
   result->p5 = Quantile(values, 0.05);
   result->p95 = Quantile(values, 0.95);
@@ -102,10 +99,10 @@ void AddProbabilities(const SampledChain& sampled, WorksheetResult* result) {
     for (const double score : scores)
       result->probability[static_cast<std::size_t>(score)] +=
           1.0 / static_cast<double>(scores.size());
-    scores.resize(frames.size(), kNotKnown);
+    scores.resize(frames.size(), kUnknownValue);
     const auto interval = IntervalOfKnown(scores);
-    result->likely_low.push_back(interval ? interval->low : kNotKnown);
-    result->likely_high.push_back(interval ? interval->high : kNotKnown);
+    result->likely_low.push_back(interval ? interval->low : kUnknownValue);
+    result->likely_high.push_back(interval ? interval->high : kUnknownValue);
   }
   for (double& probability : result->probability) probability /= std::max(1.0, times);
 }
@@ -180,13 +177,13 @@ void AddDamage(const Scenario& scenario, const NominalChain& nominal,
 }
 
 void AddFatigue(const Scenario& scenario, const NominalChain& nominal,
-                std::span<const PersonSample> all, Assessment* a) {
+                std::span<const PersonSample> all, const WorkPattern& work, Assessment* a) {
   using ergonomics::FatigueJoint;
   const auto add = [&](int hand, const char* joint, FatigueJoint kind,
                        double (*use)(const Frame&)) {
     if (!scenario.Has(hand)) return;
     if (const auto load = LoadOverRun(std::string("fatigue of the ") + joint, nominal, use, all, a))
-      a->fatigue.push_back(FatigueOfLoad(joint, kind, *load));
+      a->fatigue.push_back(FatigueOfLoad(joint, kind, *load, work.fatigue_trial));
   };
   add(0, "left shoulder", FatigueJoint::kShoulder,
       [](const Frame& f) { return f.shoulder_use[0]; });
@@ -370,6 +367,31 @@ void AddHandDamage(const Scenario& scenario, std::span<const PersonSample> all,
   }
 }
 
+// Adds what you stated about the work, and what therefore cannot be evaluated.
+void AddStatedWork(const WorkPattern& work, Assessment* a) {
+  if (!work.grip_effort)
+    a->not_evaluable.push_back({"an upper bound of the hand activity ratio (ACGIH)",
+                                "the effort of the grip is not measured, and it was not stated "
+                                "with --grip-effort"});
+  if (!work.fatigue_trial)
+    a->not_evaluable.push_back({"fatigue by trial (Peternel)",
+                                "no trial of the person's endurance was stated with "
+                                "--fatigue-trial"});
+  else
+    a->assumptions.push_back(
+        Formatted("In a trial, the person held %.0f %% of strength for %.0f s, as you stated. "
+                  "Each joint fatigues as in this trial (Peternel).",
+                  100 * work.fatigue_trial->reference_load, work.fatigue_trial->reference_time));
+}
+
+void AddHandActivity(const Scenario& scenario, const NominalChain& nominal,
+                     std::span<const PersonSample> all, const WorkPattern& work, Assessment* a) {
+  for (int hand = 0; hand < kHands; ++hand)
+    if (scenario.Has(hand))
+      a->hand_activity.push_back(HandActivityOf(hand, all, nominal, work.grip_effort));
+  AddStatedWork(work, a);
+}
+
 }  // namespace
 
 Assessment Assess(const Scenario& scenario, std::optional<double> object_mass, const PersonRun& run,
@@ -417,10 +439,11 @@ Assessment Assess(const Scenario& scenario, std::optional<double> object_mass, c
   AddMisfit(nominal.postures, &a.measured, &a.warnings);
   AddLifts(object_mass, run, work, &a);
   AddDamage(scenario, nominal, run.samples, &a);
-  AddFatigue(scenario, nominal, run.samples, &a);
+  AddFatigue(scenario, nominal, run.samples, work, &a);
   AddPictures(nominal, samples, options.intervals, &a);
   AddWords(scenario, work, &a);
   AddHandDamage(scenario, run.samples, work, &a);
+  AddHandActivity(scenario, nominal, run.samples, work, &a);
   AddMuscleWords(nominal, &a.warnings, &a.assumptions, &a.not_evaluable);
   if (options.arm)
     a.assumptions.push_back(

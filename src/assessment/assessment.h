@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "assessment/exposure.h"
+#include "assessment/hand_activity.h"
 #include "assessment/lifts.h"
 #include "assessment/measured_body.h"
 #include "assessment/person_run.h"
@@ -70,12 +71,13 @@ struct Assessment {
       job;  // without a value if there are fewer than two lifts with two hands
   std::vector<DamageResult> damage;
   std::vector<FatigueResult> fatigue;
-  std::vector<LimitResult> limits;         // filled by JudgeUserLimits
-  BodyPicture worst;                       // body at WorstSample()
-  std::vector<BodyPicture> pictures;       // evenly spaced over the judged time
-  std::optional<SafetyAssessment> safety;  // filled by JudgeSafety; empty: not judged
-  MeasuredBody measured;                   // measurements in addition to the hands
-  std::vector<std::string> warnings;       // sentences about doubtful input
+  std::vector<HandActivity> hand_activity;  // of each existing handle
+  std::vector<LimitResult> limits;          // filled by JudgeUserLimits
+  BodyPicture worst;                        // body at WorstSample()
+  std::vector<BodyPicture> pictures;        // evenly spaced over the judged time
+  std::optional<SafetyAssessment> safety;   // filled by JudgeSafety; empty: not judged
+  MeasuredBody measured;                    // measurements in addition to the hands
+  std::vector<std::string> warnings;        // sentences about doubtful input
   std::vector<std::string> assumptions;
   std::vector<NotEvaluable> not_evaluable;
 };

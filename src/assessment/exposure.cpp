@@ -26,6 +26,53 @@ std::vector<double> Coarse(std::span<const double> load) {
   return coarse;
 }
 
+// Ma et al. 2009, with the interface of FatigueTracker.
+class MaTracker {
+ public:
+  void Step(double mean_load) {
+    capacity_ = ergonomics::Capacity(capacity_, std::min(mean_load, 1.0), kStep);
+  }
+  double capacity() const { return capacity_; }
+  bool IsTooMuch(double load) const { return load > capacity_; }
+
+ private:
+  double capacity_ = 1;
+};
+
+// Peternel et al. 2018, likewise.
+class TrialTracker {
+ public:
+  explicit TrialTracker(const ergonomics::TrialFatigue& trial) : trial_(trial) {}
+  void Step(double mean_load) {
+    fatigue_ = ergonomics::TrialFatigueAfter(fatigue_, std::min(mean_load, 1.0), kStep, trial_);
+  }
+  double capacity() const { return 1 - fatigue_; }
+  bool IsTooMuch(double) const { return fatigue_ >= ergonomics::kTrialExhaustion; }
+
+ private:
+  ergonomics::TrialFatigue trial_;
+  double fatigue_ = 0;
+};
+
+// Repeats the run until it is too much, but for at most a shift.
+template <class Tracker>
+FatigueCourse CourseOf(Tracker state, std::span<const double> coarse) {
+  FatigueCourse course;
+  course.time_to_limit = std::numeric_limits<double>::infinity();
+  double time = 0;
+  const auto run = [&] {
+    for (const double u : coarse) {
+      if (state.IsTooMuch(u) && time < course.time_to_limit) course.time_to_limit = time;
+      state.Step(u);
+      time += kStep;
+    }
+  };
+  run();
+  course.capacity = state.capacity();
+  while (time < ergonomics::kShift && time <= course.time_to_limit) run();
+  return course;
+}
+
 std::size_t RestOf(double cutoff) { return static_cast<std::size_t>(kSampleRate / cutoff); }
 
 // Applies a first-order filter forward and backward, so that the result has no delay. The filter
@@ -101,23 +148,15 @@ void FatigueTracker::Step(double mean_load) {
 }
 
 FatigueResult FatigueOfLoad(const std::string& joint, ergonomics::FatigueJoint kind,
-                            std::span<const double> load) {
-  FatigueResult result = {joint};
+                            std::span<const double> load,
+                            const std::optional<ergonomics::TrialFatigue>& trial) {
   const std::vector<double> coarse = Coarse(load);
-  FatigueTracker state(kind);
-  result.time_to_limit = std::numeric_limits<double>::infinity();
-  double time = 0;
-  const auto run = [&] {
-    for (const double u : coarse) {
-      if (u > state.capacity() && time < result.time_to_limit) result.time_to_limit = time;
-      state.Step(u);
-      time += kStep;
-    }
-  };
-  run();
-  result.capacity = state.capacity();
+  FatigueResult result = {joint};
   result.mean_load = std::reduce(coarse.begin(), coarse.end()) / static_cast<double>(coarse.size());
-  while (time < ergonomics::kShift && time <= result.time_to_limit) run();
+  result.compartments = CourseOf(FatigueTracker(kind), coarse);
+  result.ma = CourseOf(MaTracker(), coarse);
+  if (trial) result.trial = CourseOf(TrialTracker(*trial), coarse);
+  result.endurance = ergonomics::MeasuredEnduranceTime(result.mean_load, kind);
   return result;
 }
 

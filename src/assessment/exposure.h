@@ -58,6 +58,7 @@ class FatigueTracker {
   void Add(double load);
   void Step(double mean_load);                           // advances by 0.1 s
   double capacity() const { return state_.capacity(); }  // remaining strength, as a share
+  bool IsTooMuch(double load) const { return load > capacity(); }
 
  private:
   ergonomics::FatigueRates rates_;
@@ -66,17 +67,29 @@ class FatigueTracker {
   std::size_t count_ = 0;
 };
 
-// Fatigue of one joint over a run.
-struct FatigueResult {
-  std::string joint;         // "left shoulder"
-  double mean_load = 0;      // share of strength
+// What a model of fatigue predicts for a run and its repetitions.
+struct FatigueCourse {
   double capacity = 1;       // remaining strength at the end of the run, as a share
   double time_to_limit = 0;  // time until a repetition of the run needs more than the remaining
                              // strength [s]; infinite if longer than 8 h
 };
 
+// Fatigue of one joint over a run.
+struct FatigueResult {
+  std::string joint;           // "left shoulder"
+  double mean_load = 0;        // share of strength
+  FatigueCourse compartments;  // 3CC-r
+  FatigueCourse ma;            // Ma et al. 2009
+  // Peternel et al. 2018, if a trial was stated: `capacity` is 1 minus the fatigue, and the limit
+  // is complete fatigue (kTrialExhaustion).
+  std::optional<FatigueCourse> trial;
+  // Time for which people held the mean load without a break (MeasuredEnduranceTime) [s].
+  double endurance = 0;
+};
+
 // `load` is a share of strength at 100 Hz.
 FatigueResult FatigueOfLoad(const std::string& joint, ergonomics::FatigueJoint kind,
-                            std::span<const double> load);
+                            std::span<const double> load,
+                            const std::optional<ergonomics::TrialFatigue>& trial = {});
 
 }  // namespace predictor::assessment

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace predictor::assessment {
@@ -10,8 +9,6 @@ namespace {
 
 using ergonomics::StrengthDirection;
 using person::ArmJoint;
-
-constexpr double kUnknownValue = std::numeric_limits<double>::quiet_NaN();
 
 ergonomics::BodyPosture BodyOf(const person::PostureAngles& a) {
   ergonomics::BodyPosture body;

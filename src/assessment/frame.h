@@ -3,9 +3,11 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <optional>
 
 #include "assessment/muscle_use.h"
+#include "ergonomics/fatigue.h"
 #include "ergonomics/niosh.h"
 #include "ergonomics/owas.h"
 #include "ergonomics/reba.h"
@@ -17,6 +19,9 @@
 
 namespace predictor::assessment {
 
+// A value that is not known.
+inline constexpr double kUnknownValue = std::numeric_limits<double>::quiet_NaN();
+
 // Assumptions about the work that no recording contains.
 struct WorkPattern {
   bool repeated = false;  // the person takes the same posture at least four times a minute
@@ -25,8 +30,11 @@ struct WorkPattern {
   // Duration of the work with lifts like those of the run.
   ergonomics::LiftDuration lifting = ergonomics::LiftDuration::kShort;
   // Effort with which a hand grips a handle, 0 … 10 (OMNI-RES). Without a value, DUET is not
-  // evaluated, because no sensor measures this effort.
+  // evaluated, because no sensor measures this effort, and the hand activity is a lower bound.
   std::optional<double> grip_effort;
+  // A trial in which the person held a load until exhaustion. Without a value, Peternel's fatigue
+  // is not evaluated.
+  std::optional<ergonomics::TrialFatigue> fatigue_trial;
   // Strength of the person, as a multiple of the mean for the person's sex (BodySpec::strength).
   std::array<double, ergonomics::kStrengthDirections> strength = {1, 1, 1, 1};
 };

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 
+#include "assessment/frame.h"
 #include "core/error.h"
 #include "core/format.h"
 #include "core/text.h"
@@ -13,7 +13,6 @@
 namespace predictor::assessment {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMaxShareAbove =
     0.01;  // share of the time with an envelope above mvc that causes no warning (D)
 
@@ -246,7 +245,7 @@ EmgAgreement AgreementOf(const MeasuredEmg& channel) {
     sum.rms += difference * difference;
     count += 1;
   }
-  if (count == 0) return {kNone, kNone, kNone};
+  if (count == 0) return {kUnknownValue, kUnknownValue, kUnknownValue};
   return {sum.measured / count, sum.modelled / count, std::sqrt(sum.rms / count)};
 }
 

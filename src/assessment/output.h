@@ -26,6 +26,21 @@ std::string AssessmentCsv(const Assessment& a);
 std::string AssessmentPage(const Assessment& a, const std::string& program_version,
                            const Comparison* comparison = nullptr);
 
+// The lifts of one of several recordings.
+struct RecordedLifts {
+  std::string recording;  // file
+  std::string pseudonym;  // empty: not known
+  double minutes = 0;     // simulated duration of the run
+  std::vector<Lift> lifts;
+};
+// Returns the lifts of several recordings as the job of one person.
+LiftingJob JobOf(std::span<const RecordedLifts> recordings);
+std::string LiftingJobJson(std::span<const RecordedLifts> recordings);
+// Returns the JSON Schema (draft-07) of LiftingJobJson.
+std::string LiftingJobSchema();
+// Returns one row for each lift and lowering, with the indices of the whole job in each row.
+std::string LiftingJobCsv(std::span<const RecordedLifts> recordings);
+
 // The person of a run in a report: the assessment, or a sentence that explains its absence.
 struct PersonOfRun {
   std::string name;  // name of the run, if the report compares several
@@ -51,6 +66,12 @@ std::string Sentence(const Lift& lift);
 std::string Sentence(const LiftingJob& job);
 std::string Sentence(const DamageResult& damage);
 std::string Sentence(const FatigueResult& fatigue);
+// Names of the models of fatigue beside 3CC-r.
+inline constexpr const char* kMaModel = "Ma's model";
+inline constexpr const char* kTrialModel = "Peternel's model with the stated trial";
+inline constexpr const char* kEnduranceModel = "Measured endurance at the mean load";
+// Returns a time such as "12 min", or "not within 8 h".
+std::string MinutesText(double seconds);
 // Returns a sentence such as "The body reaches the handles 98 % of the time ...".
 std::string ReachSentence(const Assessment& a);
 // Returns a sentence that states who moved the handles.

@@ -23,6 +23,9 @@ std::string HeadOf(const Assessment& a) {
     AppendHead(*q.kind, ".high", &text);
   }
   for (const WorksheetResult& w : a.worksheets) Append(&text, ",%s", w.kind->name);
+  for (const HandActivity& activity : a.hand_activity)
+    for (const char* part : {"exerts", "activity_level", "activity_ratio"})
+      Append(&text, ",hands.%s.%s", HandName(activity.hand), part);
   for (const MeasuredSignal& signal : a.measured.signals)
     text += "," + CsvCell("measured." + signal.name +
                           (signal.unit.empty() ? "" : " [" + signal.unit + "]"));
@@ -51,6 +54,10 @@ std::string AssessmentCsv(const Assessment& a) {
     }
     for (const WorksheetResult& w : a.worksheets)
       text += w.values[i] > 0 ? Formatted(",%d", w.values[i]) : ",";
+    for (const HandActivity& activity : a.hand_activity) {
+      Append(&text, ",%d,%.6g,", activity.exerts[i] ? 1 : 0, activity.level);
+      if (std::isfinite(activity.ratio)) Append(&text, "%.6g", activity.ratio);
+    }
     for (const MeasuredSignal& signal : a.measured.signals)
       text += std::isfinite(signal.values[i]) ? Formatted(",%.9g", signal.values[i]) : ",";
     for (const MeasuredEmg& emg : a.measured.emg.channels)
@@ -60,6 +67,27 @@ std::string AssessmentCsv(const Assessment& a) {
     text += '\n';
     k += sampled ? 1 : 0;
   }
+  return text;
+}
+
+std::string LiftingJobCsv(std::span<const RecordedLifts> recordings) {
+  const LiftingJob job = JobOf(recordings);
+  const auto number = [](double x) { return std::isfinite(x) ? Formatted("%.6g", x) : ""; };
+  std::string text =
+      "recording,pseudonym,begin_s,end_s,lowered,one_hand,from_m,to_m,vertical_force_n,"
+      "lifft_share_of_reference_day,job_lifts,job_duration_min,"
+      "job_adapted_composite_lifting_index,job_unassisted_composite_lifting_index\n";
+  for (const RecordedLifts& r : recordings)
+    for (const Lift& lift : r.lifts)
+      text +=
+          Join({CsvCell(r.recording), CsvCell(r.pseudonym), number(lift.begin), number(lift.end),
+                lift.lowered ? "1" : "0", lift.one_hand ? "1" : "0", number(lift.origin.height),
+                number(lift.destination.height), number(lift.vertical_force),
+                number(lift.day_share.value_or(NAN)), std::to_string(job.lifts),
+                number(job.minutes), number(job.lifts > 1 ? job.carried : NAN),
+                number(job.lifts > 1 ? job.unassisted : NAN)},
+               ",") +
+          "\n";
   return text;
 }
 

@@ -108,8 +108,28 @@ Json ToJson(const FatigueResult& f) {
   return {{"origin", Name(Origin::kModelled)},
           {"joint", f.joint},
           {"mean_load", f.mean_load},
-          {"capacity_at_end", f.capacity},
-          {"time_to_limit_s", NumberOrNull(f.time_to_limit)}};
+          {"capacity_at_end", f.compartments.capacity},
+          {"time_to_limit_s", NumberOrNull(f.compartments.time_to_limit)},
+          {"ma_capacity_at_end", f.ma.capacity},
+          {"ma_time_to_limit_s", NumberOrNull(f.ma.time_to_limit)},
+          {"trial_capacity_at_end", f.trial ? Json(f.trial->capacity) : Json(nullptr)},
+          {"trial_time_to_limit_s", f.trial ? NumberOrNull(f.trial->time_to_limit) : Json(nullptr)},
+          {"endurance_at_mean_load_s", NumberOrNull(f.endurance)}};
+}
+
+Json ToJson(const HandActivity& a) {
+  return {{"origin", Name(Origin::kStandard)},
+          {"hand", HandName(a.hand)},
+          {"exertions", a.exertions},
+          {"exertions_per_s", a.frequency},
+          {"duty_cycle", a.duty},
+          {"peak_force_n", a.peak_force},
+          {"hand_activity_level", a.level},
+          {"extrapolated", !a.studied},
+          {"normalized_peak_force", NumberOrNull(a.normalized_force)},
+          {"normalized_peak_force_origin", a.stated ? "stated" : Name(Origin::kModelled)},
+          {"ratio", NumberOrNull(a.ratio)},
+          {"ratio_is_lower_bound", !a.stated}};
 }
 
 Json ToJson(const UsedTrack& track) {
@@ -253,14 +273,14 @@ Json JobSchema() {
   Json job = schema::Object(
       {{"origin", schema::Value("string", "always standard")},
        {"lifts", schema::Value("integer", "number of lifts with two hands")},
-       {"duration_min", schema::Value("number", "simulated time in which they occur [min]")},
+       {"duration_min", schema::Value("number", "simulated time in which the lifts occur [min]")},
        {"adapted_composite_lifting_index",
         schema::ValueOrNull("number",
                             "NIOSH's index with the weights that the hands carry; "
                             "null: outside the equation's range")},
        {"unassisted_composite_lifting_index",
         schema::ValueOrNull("number", "the same with the weights of the objects")}},
-      "the lifts of the run as one job; null: fewer than two");
+      "the lifts as one job; null: fewer than two");
   job["type"] = {"object", "null"};
   return job;
 }
@@ -290,6 +310,7 @@ std::string AssessmentJson(const Assessment& a, const Comparison* comparison) {
   json["lifting_job"] = a.job ? ToJson(*a.job) : Json(nullptr);
   json["damage"] = ListOf(a.damage);
   json["fatigue"] = ListOf(a.fatigue);
+  json["hand_activity"] = ListOf(a.hand_activity);
   json["safety"] = a.safety ? SafetyJson(*a.safety) : Json(nullptr);
   json["measured"] = {{"parts", ListOf(a.measured.parts)},
                       {"signals", ListOf(a.measured.signals)},
@@ -302,6 +323,43 @@ std::string AssessmentJson(const Assessment& a, const Comparison* comparison) {
     json["not_evaluable"].push_back({{"what", n.what}, {"why", n.why}});
   json["against"] = comparison ? ToJson(*comparison) : Json(nullptr);
   return json.dump(2) + "\n";
+}
+
+LiftingJob JobOf(std::span<const RecordedLifts> recordings) {
+  std::vector<Lift> lifts;
+  double minutes = 0;
+  for (const RecordedLifts& r : recordings) {
+    lifts.insert(lifts.end(), r.lifts.begin(), r.lifts.end());
+    minutes += r.minutes;
+  }
+  return JobOf(lifts, minutes);
+}
+
+std::string LiftingJobJson(std::span<const RecordedLifts> recordings) {
+  Json json = {{"recordings", Json::array()}};
+  for (const RecordedLifts& r : recordings)
+    json["recordings"].push_back({{"recording", r.recording},
+                                  {"pseudonym", r.pseudonym},
+                                  {"duration_min", r.minutes},
+                                  {"lifts", ListOf(r.lifts)}});
+  const LiftingJob job = JobOf(recordings);
+  json["lifting_job"] = job.lifts > 1 ? ToJson(job) : Json(nullptr);
+  return json.dump(2) + "\n";
+}
+
+std::string LiftingJobSchema() {
+  Json recording = schema::Object(
+      {{"recording", schema::Value("string", "file")},
+       {"pseudonym", schema::Value("string", "of the participant; empty: not known")},
+       {"duration_min", schema::Value("number", "simulated duration of the run [min]")},
+       {"lifts", ListSchema("lifts and lowerings of the run", ToJson(Lift{}))}},
+      "a recording");
+  Json root = schema::Object(
+      {{"recordings", schema::Array(std::move(recording), "the recordings of the job")},
+       {"lifting_job", JobSchema()}},
+      "The lifts of several recordings as the job of one person");
+  root["$schema"] = schema::kDraft;
+  return root.dump(2) + "\n";
 }
 
 std::string AssessmentSchema() {
@@ -323,7 +381,13 @@ std::string AssessmentSchema() {
        {"lifts", ListSchema("lifts and lowerings of the run", ToJson(Lift{}))},
        {"lifting_job", JobSchema()},
        {"damage", ListSchema("cumulative damage", ToJson(DamageResult{}))},
-       {"fatigue", ListSchema("fatigue of joints", ToJson(FatigueResult{}))},
+       {"fatigue",
+        ListSchema("fatigue of joints by 3CC-r, Ma's model and a stated trial, and the endurance "
+                   "that was measured at the mean load",
+                   ToJson(FatigueResult{}))},
+       {"hand_activity",
+        ListSchema("hand activity level of ACGIH, from the measured force of each hand",
+                   ToJson(HandActivity{}))},
        {"safety", SafetySchema()},
        {"measured",
         schema::Object(

@@ -218,11 +218,18 @@ std::string DamageTable(const Assessment& a) {
 
 std::string FatigueTable(const Assessment& a) {
   std::vector<std::vector<std::string>> rows = {
-      {"Joint", "Mean load", "Strength left", "Too much after"}};
-  for (const FatigueResult& f : a.fatigue)
-    rows.push_back({EscapeMarkup(f.joint), Percent(f.mean_load), Percent(f.capacity),
-                    std::isfinite(f.time_to_limit) ? Formatted("%.0f min", f.time_to_limit / 60)
-                                                   : "not within 8 h"});
+      {"Joint", "Mean load", "Model", "Strength left", "Too much after"}};
+  for (const FatigueResult& f : a.fatigue) {
+    const auto add = [&](const char* model, const FatigueCourse& course) {
+      rows.push_back({EscapeMarkup(f.joint), Percent(f.mean_load), EscapeMarkup(model),
+                      Percent(course.capacity), MinutesText(course.time_to_limit)});
+    };
+    add("3CC-r", f.compartments);
+    add(kMaModel, f.ma);
+    if (f.trial) add(kTrialModel, *f.trial);
+    rows.push_back({EscapeMarkup(f.joint), Percent(f.mean_load), kEnduranceModel, "–",
+                    MinutesText(f.endurance)});
+  }
   return HtmlTable(rows);
 }
 
@@ -243,11 +250,15 @@ void AddCosts(const Assessment& a, Outline* outline) {
       "<p class=\"caption\">The values are shares of the reference day. For the damage of the "
       "reference day, the method gives a probability of one half that the job causes many "
       "injuries. This probability is not the risk of a single person.</p>\n");
-  outline->Begin("fatigue", "Fatigue by 3CC-r (modelled)");
+  outline->Begin("fatigue", "Fatigue (modelled)");
   page.Html(FatigueTable(a));
   page.Html(
       "<p class=\"caption\">As shares of strength. Too much after: the time after which a "
-      "repetition of the run, without a break, needs more strength than is left.</p>\n");
+      "repetition of the run, without a break, needs more strength than is left. The measured "
+      "endurance is the time for which people held the mean load without moving (Frey-Law &amp; "
+      "Avin 2010).</p>\n");
+  outline->Begin("hand-activity", "Hand activity, ACGIH (standard)");
+  for (const HandActivity& activity : a.hand_activity) page.Paragraph(Sentence(activity));
 }
 
 void AddGroups(const Assessment& a, Outline* outline) {

@@ -177,17 +177,28 @@ std::string Sentence(const DamageResult& damage) {
       RangeWords(damage).c_str());
 }
 
+std::string MinutesText(double seconds) {
+  return seconds < 8 * 3600 ? Formatted("%.0f min", seconds / 60) : "not within 8 h";
+}
+
 std::string Sentence(const FatigueResult& fatigue) {
+  const FatigueCourse& course = fatigue.compartments;
   std::string text =
-      Formatted("%s: %.1f %% of strength on average, %.1f %% of strength left.",
-                fatigue.joint.c_str(), 100 * fatigue.mean_load, 100 * fatigue.capacity);
-  if (std::isfinite(fatigue.time_to_limit))
+      Formatted("%s: %.1f %% of strength on average, %.1f %% of strength left (3CC-r).",
+                fatigue.joint.c_str(), 100 * fatigue.mean_load, 100 * course.capacity);
+  if (std::isfinite(course.time_to_limit))
     Append(&text,
            " If the run is repeated without a break, it becomes too demanding after %.0f min.",
-           fatigue.time_to_limit / 60);
+           course.time_to_limit / 60);
   else
     text += " The run can be repeated without a break for 8 h.";
-  return text;
+  const auto add = [&](const char* model, const FatigueCourse& other) {
+    Append(&text, " %s: %.1f %% left, too demanding: %s.", model, 100 * other.capacity,
+           MinutesText(other.time_to_limit).c_str());
+  };
+  add(kMaModel, fatigue.ma);
+  if (fatigue.trial) add(kTrialModel, *fatigue.trial);
+  return text + Formatted(" %s: %s.", kEnduranceModel, MinutesText(fatigue.endurance).c_str());
 }
 
 std::string AssessmentText(const Assessment& a) {
@@ -212,7 +223,8 @@ std::string AssessmentText(const Assessment& a) {
   AppendSentences("Lifts and lowerings (standard)", a.lifts, &text);
   if (a.job) AppendLine(&text, "  %s", Sentence(*a.job).c_str());
   AppendSentences("Cumulative damage (standard)", a.damage, &text);
-  AppendSentences("Fatigue, 3CC-r (modelled)", a.fatigue, &text);
+  AppendSentences("Fatigue (modelled)", a.fatigue, &text);
+  AppendSentences("Hand activity, ACGIH (standard)", a.hand_activity, &text);
   if (a.safety) text += SafetyText(*a.safety);
   AppendLine(&text, "\nAssumptions");
   for (const std::string& line : a.assumptions) AppendLine(&text, "  %s", line.c_str());

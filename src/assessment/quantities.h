@@ -31,7 +31,7 @@ struct QuantityKind {
   const char* label;
   Unit unit;
   Origin origin;
-  double (*of)(const Moment&);
+  double (*of)(const Moment&);  // null: one value for the whole run (see ActivityRatioKind)
   double limit = 0;             // a published limit, in SI units; 0: none
   const char* limit_name = "";  // its source
   int hand = -1;                // the hand that the quantity belongs to; -1: neither

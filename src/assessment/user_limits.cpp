@@ -20,10 +20,13 @@ constexpr const char* kColumns = "quantity,limit,unit,allowed_s,clause";
 constexpr double kLowest = -1e9;  // no lower bound for a limit: a trunk bends backward, too
 
 const QuantityKind& KindOf(const std::string& path, const std::string& place) {
+  std::vector<const QuantityKind*> kinds;
+  for (const QuantityKind& kind : Quantities()) kinds.push_back(&kind);
+  for (int hand = 0; hand < kHands; ++hand) kinds.push_back(&ActivityRatioKind(hand));
   std::vector<std::string> paths;
-  for (const QuantityKind& kind : Quantities()) {
-    if (path == kind.path) return kind;
-    paths.emplace_back(kind.path);
+  for (const QuantityKind* kind : kinds) {
+    if (path == kind->path) return *kind;
+    paths.emplace_back(kind->path);
   }
   const std::string nearest = Nearest(path, paths);
   throw InputError(place, "there is no quantity " + Quote(path) + ". " +
@@ -47,6 +50,9 @@ UserLimit LimitOf(const ergonomics::LimitRow& row) {
   limit.value = ergonomics::NumberInCell(row.cells[1], "limit", kLowest, true, row.place) *
                 FactorOf(row.cells[2], *limit.kind, row.place);
   limit.allowed = ergonomics::NumberInCell(row.cells[3], "allowed_s", 0, true, row.place);
+  if (!limit.kind->of && limit.allowed > 0)
+    throw InputError(row.place, std::string("allowed_s must be 0, because ") + limit.kind->path +
+                                    " has one value for the whole run.");
   limit.clause = row.cells[4];
   return limit;
 }
@@ -97,6 +103,28 @@ LimitResult Compared(const UserLimit& limit, const QuantityResult& q, const Asse
   return r;
 }
 
+// Returns nothing if the hand has no ratio.
+std::optional<LimitResult> ComparedRatio(const UserLimit& limit, const Assessment& a) {
+  const auto activity = std::ranges::find(a.hand_activity, limit.kind->hand, &HandActivity::hand);
+  if (activity == a.hand_activity.end() || std::isnan(activity->ratio)) return {};
+  LimitResult r{.limit = limit, .worst = activity->ratio};
+  if (IsBeyond(activity->ratio, limit)) {
+    r.verdict = Verdict::kExceeded;
+    r.share = 1;
+    r.longest = a.duration;
+  } else {
+    r.verdict = activity->stated ? Verdict::kKept : Verdict::kUncertain;
+  }
+  return r;
+}
+
+std::optional<LimitResult> ComparedOverTime(const UserLimit& limit, const Assessment& a) {
+  const auto q = std::ranges::find(a.quantities, limit.kind, &QuantityResult::kind);
+  const auto known = [](double x) { return std::isfinite(x); };
+  if (q == a.quantities.end() || std::ranges::none_of(q->values, known)) return {};
+  return Compared(limit, *q, a);
+}
+
 // Returns "trunk flexion (EDITION, clause)", for example.
 std::string LabelOf(const UserLimit& limit, const std::string& edition) {
   const std::string clause = limit.clause.empty() ? "" : ", " + Printable(limit.clause);
@@ -129,20 +157,24 @@ const char* Name(Verdict verdict) {
 
 void JudgeUserLimits(const UserLimits& limits, Assessment* a) {
   for (const UserLimit& limit : limits.rows) {
-    const auto q = std::ranges::find(a->quantities, limit.kind, &QuantityResult::kind);
-    const auto known = [](double x) { return std::isfinite(x); };
-    if (q == a->quantities.end() || std::ranges::none_of(q->values, known)) {
+    const auto result = limit.kind->of ? ComparedOverTime(limit, *a) : ComparedRatio(limit, *a);
+    if (!result) {
       a->not_evaluable.push_back({"the limit of " + LabelOf(limit, limits.edition),
                                   "this run has no values of " + std::string(limit.kind->path)});
       continue;
     }
-    a->limits.push_back(Compared(limit, *q, *a));
+    a->limits.push_back(*result);
     a->limits.back().edition = limits.edition;
   }
 }
 
 std::string Sentence(const LimitResult& r) {
   const QuantityKind& kind = *r.limit.kind;
+  if (!kind.of)
+    return Formatted(
+        "%s, limit %s: %s. The whole run has %s%s.", LabelOf(r.limit, r.edition).c_str(),
+        ValueWithUnit(kind, r.limit.value).c_str(), Name(r.verdict),
+        ValueWithUnit(kind, r.worst).c_str(), r.verdict == Verdict::kUncertain ? " or more" : "");
   std::string text = Formatted(
       "%s, limit %s: %s. Worst %s. Beyond the limit for %.1f %% of the time, at most %.1f s at a "
       "time",

@@ -33,7 +33,8 @@ UserLimits ReadUserLimits(const std::filesystem::path& file);
 enum class Verdict {
   kKept,       // also by the possible postures, if they were computed
   kExceeded,   // likewise
-  kUncertain,  // some of the possible postures keep the limit, and some exceed it
+  kUncertain,  // some of the possible postures keep the limit, and some exceed it; or the value is
+               // a lower bound that is within the limit
 };
 const char* Name(Verdict verdict);
 

@@ -18,7 +18,7 @@
 //
 // Some methods are omitted because no source could be verified. These are Potvin's maximum
 // acceptable effort (public copies differ in a constant), the revised strain index and RCRA.
-// ACGIH's hand activity level is omitted because no sensor measures the effort of the grip.
+// ACGIH's hand activity level is in hand_activity.h.
 #pragma once
 
 #include <limits>

@@ -10,7 +10,6 @@ namespace {
 constexpr double kForEver = std::numeric_limits<double>::infinity();
 constexpr double kDevelopment = 10;       // LD = LR [1/s]
 constexpr double kMaxFatigueStep = 0.05;  // [s]
-constexpr double kExhausted = 0.993;      // fatigue that counts as exhaustion in Peternel's model
 constexpr double kMinRohmertLoad = 0.15;
 
 struct JointFatigue {
@@ -107,7 +106,7 @@ double CapacityEnduranceTime(double load, const CapacityRates& rates) {
 }
 
 double TrialFatigue::Effort() const {
-  return -reference_load * reference_time / std::log(1 - kExhausted);
+  return -reference_load * reference_time / std::log(1 - kTrialExhaustion);
 }
 
 double TrialFatigueAfter(double fatigue, double load, double dt, const TrialFatigue& trial) {

@@ -87,8 +87,10 @@ struct TrialFatigue {
   double reference_time = 60;   // [s]
   double threshold = 0.1;       // loads below it count as rest
   double recovery = 0.5;        // R, as a share of the reference effort
-  double Effort() const;        // C [s]: −load · time / ln(1 − 0.993)
+  double Effort() const;        // C [s]: −load · time / ln(1 − kTrialExhaustion)
 };
+// The fatigue at which the person is exhausted.
+inline constexpr double kTrialExhaustion = 0.993;
 // Returns the fatigue 0 … 1 after `dt` [s] at constant load. The result is exact for any dt.
 double TrialFatigueAfter(double fatigue, double load, double dt, const TrialFatigue& trial);
 

@@ -19,10 +19,11 @@ namespace fs = std::filesystem;
 
 class Evaluate : public testing::Test {
  protected:
-  std::string Record(const std::string& scenario, const std::vector<std::string>& more = {}) {
+  std::string Record(const std::string& scenario, const std::vector<std::string>& more = {},
+                     const std::string& duration = "3") {
     const std::string recording = folder_.path() / (scenario + ".mcap");
     std::vector<std::string> arguments = {
-        "simulate", Scenario(scenario.c_str()), "--quiet", "--duration", "3", "--record",
+        "simulate", Scenario(scenario.c_str()), "--quiet", "--duration", duration, "--record",
         recording};
     arguments.insert(arguments.end(), more.begin(), more.end());
     Child child(arguments);
@@ -40,6 +41,9 @@ TEST_F(Evaluate, WritesTextPageJsonAndCsv) {
   const auto json = nlohmann::json::parse(child.output());
   EXPECT_TRUE(json["person"]["simulated"].get<bool>());
   EXPECT_GT(json["quantities"]["lower_back.compression_n"]["mean"].get<double>(), 300);
+  ASSERT_GE(json["safety"]["margins"].size(), 3u);
+  for (const auto& margin : json["safety"]["margins"])
+    EXPECT_GT(margin["smallest"].get<double>(), 0) << margin;
   EXPECT_TRUE(fs::exists(csv));
   EXPECT_TRUE(fs::exists(folder_.path() / "box_9kg.person.html"));
   Child again({"evaluate", recording});
@@ -50,17 +54,23 @@ TEST_F(Evaluate, WritesTextPageJsonAndCsv) {
 TEST_F(Evaluate, UsesTheStatedWork) {
   const std::string recording = Record("box_9kg");
   Child child({"evaluate", recording, "--no-intervals", "--duration", "8h", "--coupling", "poor",
-               "--grip-effort", "4", "--json", "-"});
+               "--grip-effort", "4", "--fatigue-trial", "0.5,60", "--limits",
+               fs::path(PREDICTOR_SOURCE_DIR) / "assets/hand_activity_limits.csv", "--json", "-"});
   ASSERT_EQ(child.Wait(), 0) << child.errors();
   const auto json = nlohmann::json::parse(child.output());
   std::size_t hands = 0;
   for (const auto& damage : json["damage"]) hands += damage["tool"] == "DUET" ? 1 : 0;
   EXPECT_EQ(hands, 2u);
+  EXPECT_EQ(json["limits"].size(), 4u);
+  EXPECT_EQ(json["hand_activity"][0]["normalized_peak_force"], 4);
+  EXPECT_LT(json["fatigue"][0]["trial_capacity_at_end"].get<double>(), 1.0001);
   const std::string assumptions = json["assumptions"].dump();
   EXPECT_NE(assumptions.find("eight hours"), std::string::npos) << assumptions;
   EXPECT_NE(assumptions.find("poor handles"), std::string::npos) << assumptions;
-  for (const std::vector<std::string>& wrong :
-       {std::vector<std::string>{"--grip-effort", "11"}, {"--duration", "3h"}}) {
+  for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--grip-effort", "11"},
+                                                {"--duration", "3h"},
+                                                {"--fatigue-trial", "2,60"},
+                                                {"--fatigue-trial", "0.5"}}) {
     Child refused({"evaluate", recording, wrong[0], wrong[1], "--force"});
     EXPECT_EQ(refused.Wait(), 2) << wrong[0];
     EXPECT_NE(refused.errors().find(wrong[0]), std::string::npos) << refused.errors();
@@ -122,7 +132,8 @@ TEST_F(Evaluate, ComparesTwoDesigns) {
 }
 
 TEST_F(Evaluate, OfSeveralRecordingsWritesTheResultsOfEach) {
-  const std::string light = Record("box_9kg"), heavy = Record("box_18kg");
+  // The lift ends after 5 s.
+  const std::string light = Record("box_9kg", {}, "7"), heavy = Record("box_18kg", {}, "7");
   const fs::path out = folder_.path() / "out";
   Child child({"evaluate", light, heavy, "--no-intervals", "-o", out, "--csv", out, "--json", out});
   ASSERT_EQ(child.Wait(), 0) << child.errors();
@@ -133,6 +144,19 @@ TEST_F(Evaluate, OfSeveralRecordingsWritesTheResultsOfEach) {
     std::ifstream json(stem + ".json");
     EXPECT_EQ(nlohmann::json::parse(json)["recording"], std::string(name) + ".mcap");
   }
+  std::ifstream job(out / "lifting_job.json"), table(out / "lifting_job.csv");
+  const auto json = nlohmann::json::parse(job);
+  ASSERT_EQ(json["recordings"].size(), 2u);
+  std::size_t lifts = 0;
+  for (const auto& recording : json["recordings"]) lifts += recording["lifts"].size();
+  EXPECT_GE(lifts, 2u);
+  std::string line;
+  std::size_t rows = 0;
+  while (std::getline(table, line)) ++rows;
+  EXPECT_EQ(rows, 1 + lifts);
+  EXPECT_GE(json["lifting_job"]["lifts"].get<int>(), 2);
+  EXPECT_GT(json["lifting_job"]["unassisted_composite_lifting_index"].get<double>(),
+            json["lifting_job"]["adapted_composite_lifting_index"].get<double>());
   Child one_track({"evaluate", light, heavy, "--track", "head.csv"});
   EXPECT_EQ(one_track.Wait(), 2);
   EXPECT_NE(one_track.errors().find("one by one"), std::string::npos) << one_track.errors();

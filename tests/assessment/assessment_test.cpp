@@ -320,6 +320,26 @@ TEST(AssessmentOutput, ConformsToItsSchema) {
   EXPECT_NEAR(json["quantities"]["hands.left.force_n"]["mean"].get<double>(), 20, 1e-9);
 }
 
+TEST(AssessmentOutput, TheJobOfSeveralRecordingsConformsToItsSchema) {
+  const Json schema = Json::parse(LiftingJobSchema());
+  Lift lift;
+  lift.task = {.mean_load = 9, .max_load = 9, .origin = {0.4, 0.8, 0}, .destination = {0.4, 1, 0}};
+  lift.vertical_force = 45;
+  const std::vector<RecordedLifts> both = {{"a.mcap", "K7QM2XPX", 0.2, {lift}},
+                                           {"b.mcap", "", 0.3, {lift, lift}}};
+  const Json json = Json::parse(LiftingJobJson(both));
+  ExpectDescribed(json, schema, "");
+  EXPECT_EQ(json["lifting_job"]["lifts"], 3);
+  EXPECT_NEAR(json["lifting_job"]["duration_min"].get<double>(), 0.5, 1e-12);
+  const std::vector<Lift> lifts(3, lift);
+  EXPECT_EQ(json["lifting_job"]["unassisted_composite_lifting_index"],
+            JobOf(lifts, 0.5).unassisted);
+  EXPECT_TRUE(Json::parse(LiftingJobJson(std::span(both).first(1)))["lifting_job"].is_null());
+  const std::string csv = LiftingJobCsv(both);
+  EXPECT_EQ(std::ranges::count(csv, '\n'), 4);
+  EXPECT_NE(csv.find("a.mcap,K7QM2XPX,"), std::string::npos) << csv;
+}
+
 TEST(AssessmentOutput, CsvHasARowForEachTimeAndEqualColumns) {
   const Assessment a = Judge(20, true);
   const std::string csv = AssessmentCsv(a);

@@ -96,14 +96,40 @@ TEST(Exposure, FatigueFollowsTheClosedForm) {
   EXPECT_NEAR(result.mean_load, 0.3, 1e-12);
   // The closed form begins with a fully developed load, which the model reaches in less than a
   // second.
-  EXPECT_NEAR(1 - result.capacity, ergonomics::FatiguedShareUnderConstantLoad(0.3, 60, rates),
-              0.002);
-  EXPECT_NEAR(result.time_to_limit / ergonomics::EnduranceTime(0.3, rates), 1, 0.02);
+  EXPECT_NEAR(1 - result.compartments.capacity,
+              ergonomics::FatiguedShareUnderConstantLoad(0.3, 60, rates), 0.002);
+  EXPECT_NEAR(result.compartments.time_to_limit / ergonomics::EnduranceTime(0.3, rates), 1, 0.02);
+}
+
+// Under a constant load, Ma's capacity is exp(-k load t), and the endurance time is -ln(load) / (k
+// load).
+TEST(Exposure, MasModelFollowsItsClosedForm) {
+  const FatigueResult result =
+      FatigueOfLoad("left elbow", FatigueJoint::kElbow, std::vector<double>(6000, 0.4));
+  EXPECT_NEAR(result.ma.capacity, std::exp(-0.4), 1e-9);
+  EXPECT_NEAR(result.ma.time_to_limit, -60 * std::log(0.4) / 0.4, 0.2);
+  EXPECT_NEAR(result.endurance, 17.98 * std::pow(0.4, -2.21), 1e-9);
+  EXPECT_FALSE(result.trial);
+}
+
+// A run with the load of the trial exhausts the person after the time of the trial.
+TEST(Exposure, AStatedTrialExhaustsAfterItsTime) {
+  const ergonomics::TrialFatigue trial{.reference_load = 0.4, .reference_time = 120};
+  const FatigueResult result =
+      FatigueOfLoad("left elbow", FatigueJoint::kElbow, std::vector<double>(3000, 0.4), trial);
+  ASSERT_TRUE(result.trial);
+  EXPECT_NEAR(result.trial->time_to_limit, 120, 0.2);
+  EXPECT_NEAR(result.trial->capacity, std::pow(1 - ergonomics::kTrialExhaustion, 30. / 120), 1e-9);
+  const FatigueResult rested =
+      FatigueOfLoad("left elbow", FatigueJoint::kElbow, std::vector<double>(3000, 0.05), trial);
+  EXPECT_EQ(rested.trial->capacity, 1);
+  EXPECT_TRUE(std::isinf(rested.trial->time_to_limit));
 }
 
 TEST(Exposure, ALightLoadStaysPossible) {
   const std::vector<double> load(3000, 0.02);
-  EXPECT_TRUE(std::isinf(FatigueOfLoad("left elbow", FatigueJoint::kElbow, load).time_to_limit));
+  const FatigueResult result = FatigueOfLoad("left elbow", FatigueJoint::kElbow, load);
+  EXPECT_TRUE(std::isinf(result.compartments.time_to_limit));
 }
 
 }  // namespace

@@ -111,8 +111,8 @@ TEST(LivePerson, EndsWithTheDamageAndFatigueOfTheRecordedRun) {
   EXPECT_TRUE(std::isnan(last.parts[1].load_over_range));
   ASSERT_EQ(a.fatigue.size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_LT(a.fatigue[i].capacity, 1);
-    EXPECT_NEAR(last.parts[i + 1].capacity, a.fatigue[i].capacity, 1e-4) << i;
+    EXPECT_LT(a.fatigue[i].compartments.capacity, 1);
+    EXPECT_NEAR(last.parts[i + 1].capacity, a.fatigue[i].compartments.capacity, 1e-4) << i;
   }
 }
 

@@ -14,12 +14,9 @@ double NumberOf(const Json& json) { return json.is_null() ? std::nan("") : json.
 }  // namespace
 
 Json JsonOf(const PopulationRun& run) {
-  return {{"person", run.person},
-          {"cause", static_cast<int>(run.cause)},
-          {"held_s", run.held},
-          {"values", run.values},  // not finite: null
-          {"rula_share", run.rula_share},
-          {"beyond_lifft", run.beyond_lifft}};
+  return {{"person", run.person},         {"cause", static_cast<int>(run.cause)},
+          {"held_s", run.held},           {"values", run.values},  // not finite: null
+          {"rula_share", run.rula_share}, {"beyond_lifft", run.beyond_lifft}};
 }
 
 bool ReadRun(const Json& json, PopulationRun* run) try {

@@ -103,13 +103,21 @@ Json ToJson(const RigLimit& limit) {
           {"reached", limit.reached}, {"event", limit.event},  {"censored", limit.censored()}};
 }
 
+Json ToJson(const Margin& margin) {
+  return {{"what", margin.what},
+          {"unit", margin.unit.si},
+          {"smallest", margin.smallest},
+          {"time_s", margin.time},
+          {"joint", margin.joint}};
+}
+
 // Returns the meaning of a key. A key has the same meaning at every place where it occurs.
 std::string MeaningOf(const std::string& key) {
   static const std::map<std::string, std::string> kMeanings = {
       {"unit", "SI unit"},
       {"value", "the result; null: missing"},
       {"meaning", "how it was computed"},
-      {"joint", "joint of an arm"},
+      {"joint", "joint of an arm or of the cobot; empty: none"},
       {"before_nm", "torque when the stop was decided [N·m]"},
       {"change_nm",
        "change of the torque since then with the largest magnitude: what the stop caused; null: "
@@ -141,8 +149,9 @@ std::string MeaningOf(const std::string& key) {
       {"clamping_force_n", "bound that the scenario sets on the cobot's force; null: no bound [N]"},
       {"fixtures", "what the object or the cobot can clamp a part of the body against"},
       {"clamped", "each region, if it is clamped"},
-      {"what", "subject of the limit or the gap"},
+      {"what", "subject of the margin, the limit or the gap"},
       {"why", "why it could not be judged"},
+      {"smallest", "smallest value in the run, SI"},
       {"limit", "limit of what the rig renders, SI"},
       {"reached", "largest value in the run, SI"},
       {"event", "hazard that had begun last when the value was largest; empty: none"},
@@ -202,6 +211,8 @@ Json SafetyJson(const SafetyAssessment& safety) {
   json["separation"] = ToJson(safety.separation);
   json["drop"] = safety.drop ? ToJson(*safety.drop) : Json(nullptr);
   json["unintended_contact"] = safety.contact ? ToJson(*safety.contact) : Json(nullptr);
+  json["margins"] = Json::array();
+  for (const Margin& margin : safety.margins) json["margins"].push_back(ToJson(margin));
   json["rig"] = Json::array();
   for (const RigLimit& limit : safety.rig) json["rig"].push_back(ToJson(limit));
   json["not_evaluable"] = Json::array();
@@ -226,6 +237,9 @@ Json SafetySchema() {
         {"unintended_contact",
          OrNull(WithMeaning(TypesOf(ToJson(UnintendedContact{})),
                             "object or cobot hits or clamps the person; standard"))},
+        {"margins", ListOf(ToJson(Margin{}),
+                           "how close the cobot comes to its joint limits and to singular "
+                           "postures, and links of the arms to each other; modelled")},
         {"rig", ListOf(ToJson(RigLimit{}),
                        "limits of what the rig renders, and the values that the run reached")},
         {"not_evaluable", ListOf(Json{{"what", ""}, {"why", ""}}, "what could not be judged")}}}};

@@ -36,7 +36,8 @@ std::vector<RigLimit> RigLimits(const Scenario& scenario, const SafetyCollector:
   return limits;
 }
 
-void AddGaps(const Scenario& scenario, const SafetyOptions& options, SafetyAssessment* safety) {
+void AddGaps(const Scenario& scenario, const SafetyOptions& options, const CobotMargins& margins,
+             SafetyAssessment* safety) {
   const auto add = [&](const char* what, const char* why) {
     safety->not_evaluable.push_back({what, why});
   };
@@ -56,8 +57,9 @@ void AddGaps(const Scenario& scenario, const SafetyOptions& options, SafetyAsses
   }
   add("distance between the person's body and the links of the cobot",
       "the links have no shape in this simulation");
-  add("distance of the cobot from its joint limits and from singular postures",
-      "this evaluation does not load the kinematics of the cobot");
+  if (!margins.known())
+    add("distance of the cobot from its joint limits and from singular postures",
+        "the recording has lost the model of the cobot");
   for (const RigLimit& limit : safety->rig)
     if (limit.censored())
       safety->not_evaluable.push_back(
@@ -75,13 +77,18 @@ void AddGaps(const Scenario& scenario, const SafetyOptions& options, SafetyAsses
 
 }  // namespace
 
-SafetyCollector::SafetyCollector(const Scenario& scenario, std::vector<OutlinePoint> outline)
-    : exposure_(scenario), stops_(scenario), scene_(std::move(outline)) {}
+SafetyCollector::SafetyCollector(const Scenario& scenario, std::vector<OutlinePoint> outline,
+                                 std::shared_ptr<const RobotModel> cobot)
+    : exposure_(scenario),
+      stops_(scenario),
+      scene_(std::move(outline)),
+      margins_(scenario, std::move(cobot)) {}
 
 void SafetyCollector::Add(const TickRecord& record) {
   exposure_.Add(record);
   stops_.Add(record);
   scene_.Add(record);
+  margins_.Add(record);
   if (!record.ran) return;
   for (const HandRecord& hand : record.hands) {
     if (!hand.present) continue;
@@ -109,7 +116,8 @@ SafetyAssessment JudgeSafety(const Scenario& scenario, const PersonSetup& setup,
   if (options.masses && options.limits)
     safety.contact = ContactOf(run.scene(), *options.masses, *options.limits, scenario);
   safety.rig = RigLimits(scenario, run.largest());
-  AddGaps(scenario, options, &safety);
+  safety.margins = run.margins().results();
+  AddGaps(scenario, options, run.margins(), &safety);
   return safety;
 }
 

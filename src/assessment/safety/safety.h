@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "assessment/safety/cobot_margins.h"
 #include "assessment/safety/hand_exposure.h"
 #include "assessment/safety/letting_go.h"
 #include "assessment/safety/stop_loads.h"
@@ -16,14 +18,16 @@ namespace predictor::assessment {
 // Collects the records of a run.
 class SafetyCollector {
  public:
-  // `outline`: see SceneMotion.
-  explicit SafetyCollector(const Scenario& scenario, std::vector<OutlinePoint> outline = {});
+  // `outline`: see SceneMotion. `cobot` is the model of the virtual cobot. Null: not known.
+  explicit SafetyCollector(const Scenario& scenario, std::vector<OutlinePoint> outline = {},
+                           std::shared_ptr<const RobotModel> cobot = nullptr);
   // Adds the next record, in order.
   void Add(const TickRecord& record);
 
   const HandExposure& exposure() const { return exposure_; }
   const StopWindows& stops() const { return stops_; }
   const SceneMotion& scene() const { return scene_; }
+  const CobotMargins& margins() const { return margins_; }
 
   // The largest values of both hands in RUN: the force [N], the torque [N·m], and the speeds of the
   // virtual handles [m/s], [rad/s].
@@ -40,6 +44,7 @@ class SafetyCollector {
   HandExposure exposure_;
   StopWindows stops_;
   SceneMotion scene_;
+  CobotMargins margins_;
   Largest largest_;
 };
 
@@ -61,6 +66,7 @@ struct SafetyAssessment {
   Separation separation;
   std::optional<Drop> drop;
   std::optional<UnintendedContact> contact;
+  std::vector<Margin> margins;  // modelled
   std::vector<RigLimit> rig;
   std::vector<NotEvaluable> not_evaluable;
 };

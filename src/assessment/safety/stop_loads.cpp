@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 
 #include "assessment/person_chain.h"
@@ -29,12 +28,11 @@ struct Peaks {
 };
 template <class TorqueAt>
 Peaks PeaksOf(std::size_t decided, std::size_t end, const TorqueAt& torque_at) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const double before = torque_at(decided - 1);
   Peaks peaks;
   for (std::size_t i = decided; i < end; ++i) {
     const double change = torque_at(i) - before;
-    if (!std::isfinite(change)) return {kNone, kNone};
+    if (!std::isfinite(change)) return {kUnknownValue, kUnknownValue};
     peaks.torque = std::max(peaks.torque, std::abs(torque_at(i)));
     if (std::abs(change) > std::abs(peaks.change)) peaks.change = change;
   }

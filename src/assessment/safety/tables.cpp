@@ -171,6 +171,19 @@ SafetyTable ContactTable(const UnintendedContact& contact) {
   return table;
 }
 
+SafetyTable MarginTable(const std::vector<Margin>& margins) {
+  SafetyTable table{.title = "Margins of the cobot and the arms", .origin = "modelled"};
+  table.rows.push_back({"", "smallest", "at [s]", "joint"});
+  for (const Margin& margin : margins)
+    table.rows.push_back({WithUnit(margin.what, margin.unit),
+                          NumberText(margin.unit, margin.smallest), Formatted("%.1f", margin.time),
+                          margin.joint.empty() ? "–" : Printable(margin.joint)});
+  table.notes.emplace_back(
+      "Near a limit of a joint or a singular posture, the cobot cannot follow a hand in every "
+      "direction, or its joints move fast.");
+  return table;
+}
+
 SafetyTable RigTable(const std::vector<RigLimit>& limits) {
   SafetyTable table{.title = "What this rig renders", .origin = "measured"};
   table.rows.push_back({"", "up to", "reached", "share"});
@@ -197,6 +210,7 @@ std::vector<SafetyTable> SafetyTables(const SafetyAssessment& safety) {
   for (const StopJudgement& stop : safety.stops) tables.push_back(StopTable(stop));
   tables.push_back(LettingGoTable(safety));
   if (safety.contact) tables.push_back(ContactTable(*safety.contact));
+  if (!safety.margins.empty()) tables.push_back(MarginTable(safety.margins));
   tables.push_back(RigTable(safety.rig));
   return tables;
 }
