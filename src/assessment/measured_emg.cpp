@@ -115,7 +115,7 @@ void WarnAboutGaps(const tracks::EmgTrack& track, const std::string& name, Measu
 double EmgActivations::At(double time, double width) const {
   const auto begin = std::ranges::lower_bound(times, time - width / 2);
   const auto end = std::ranges::lower_bound(times, time + width / 2);
-  if (begin == end) return kNone;
+  if (begin == end) return kUnknownValue;
   double sum = 0;
   for (auto i = begin; i != end; ++i) sum += values[static_cast<std::size_t>(i - times.begin())];
   return sum / static_cast<double>(end - begin);

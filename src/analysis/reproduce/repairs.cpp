@@ -45,8 +45,8 @@ std::vector<ConstructedTask> ConstructedTasks() {
   };
 }
 
-constexpr const char* kErrors[] = {"tracking.left.translation_m",
-                                   "tracking.relative.right_from_left_m"};
+constexpr const char* kComparedErrors[] = {"tracking.left.translation_m",
+                                           "tracking.relative.right_from_left_m"};
 
 // Runs a task with additional overrides, and adds the numbers and a row of the page's table.
 void RunConstructed(const ConstructedTask& task, const std::string& name,
@@ -65,7 +65,7 @@ void RunConstructed(const ConstructedTask& task, const std::string& name,
     n.variant = true;
     e->numbers.push_back(std::move(n));
   };
-  for (const char* path : kErrors) {
+  for (const char* path : kComparedErrors) {
     const ReproducedNumber n = NumberOfMetric(run, path);
     line.push_back(PlusMinus(n.mean, n.deviation) + " (" + Significant(n.largest, 2) + ")");
     add(n, n.quantity);
