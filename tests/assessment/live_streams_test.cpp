@@ -1,0 +1,160 @@
+// Tests that the live evaluation uses the streams of other systems as the evaluation of a recording
+// does.
+#include "assessment/live_streams.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "assessment/assessment.h"
+#include "assessment/live_person.h"
+#include "assessment/samples.h"
+#include "core/error.h"
+
+namespace predictor::assessment {
+namespace {
+
+constexpr std::uint64_t kBegin = 7'000'000'000;  // monotonic clock at tick 0 [ns]
+constexpr std::uint64_t kMilli = 1'000'000;      // [ns]
+
+TickRecord TickAt(std::uint64_t tick) {
+  TickRecord record = RecordOf(tick, 1, 20);
+  record.wall_ns = kBegin + kMilli * tick;
+  return record;
+}
+
+tracks::StreamDescription Electrode() {
+  tracks::StreamDescription stream{.name = "EMG", .rate = 1000};
+  stream.map =
+      "stream: EMG\n"
+      "emg:\n"
+      "  - {channel: E1, arm: right, muscles: [triceps_long, triceps_lateral], mvc: 1}\n";
+  stream.channels = {"E1"};
+  stream.units = {"mV"};
+  return stream;
+}
+
+tracks::StreamDescription Tracker() {
+  tracks::StreamDescription stream{.name = "tracker", .rate = 100};
+  stream.channels = {"left_elbow.p.x", "left_elbow.p.y", "left_elbow.p.z"};
+  stream.units = {"m", "m", "m"};
+  return stream;
+}
+
+StreamSample Sample(std::uint64_t tick, std::initializer_list<double> values) {
+  StreamSample sample{.wall_ns = kBegin + kMilli * tick};
+  sample.count = static_cast<std::uint32_t>(values.size());
+  std::ranges::copy(values, sample.values.begin());
+  return sample;
+}
+
+// A tone whose amplitude changes slowly, so an evaluation that uses it at a wrong time gets another
+// result.
+StreamSample Voltage(std::uint64_t tick) {
+  const double t = 1e-3 * static_cast<double>(tick);
+  const double amplitude = 0.3 + 0.15 * std::sin(2 * std::numbers::pi * t);
+  return Sample(tick, {amplitude * std::sin(2 * std::numbers::pi * 120 * t)});
+}
+
+// The elbow moves outwards.
+StreamSample Elbow(std::uint64_t tick) {
+  return Sample(tick, {0.75, -0.25 - 1e-4 * static_cast<double>(tick), 0.15});
+}
+
+using Source = StreamSample (*)(std::uint64_t tick);
+
+// Evaluates the ticks 1 to `last` and returns all states. Each sample arrives at its time.
+std::vector<PersonState> FollowStream(const tracks::StreamDescription& stream, Source source,
+                                      std::uint64_t every, std::uint64_t last) {
+  LivePerson live(PersonScenario(), {}, std::span(&stream, 1));
+  std::vector<PersonState> states;
+  for (std::uint64_t tick = 1; tick <= last; ++tick) {
+    if (source != nullptr && tick % every == 0)
+      live.streams().Take(source(tick), TickAt(tick).wall_ns);
+    if (live.Add(TickAt(tick))) states.push_back(live.state());
+  }
+  return states;
+}
+
+Assessment AssessStream(const tracks::StreamDescription& stream, Source source, std::uint64_t every,
+                        std::uint64_t last) {
+  tracks::StreamTrack track(stream);
+  for (std::uint64_t tick = every; tick <= last; tick += every) {
+    const StreamSample sample = source(tick);
+    track.Take(1e-3 * static_cast<double>(tick - 1),  // the recording starts at tick 1
+               std::span(sample.values).first(sample.count));
+  }
+  track.Convert();
+  AssessOptions options;
+  options.tracks = {track.track()};
+  options.tracks[0].of_the_run = true;
+  options.intervals = false;
+  return Assess(PersonScenario(), 9,
+                RunOf(Collect(PersonScenario(), 1e-3 * static_cast<double>(last), TickAt)),
+                options);
+}
+
+const QuantityResult& ResultOf(const Assessment& a, const std::string& path) {
+  for (const QuantityResult& q : a.quantities)
+    if (path == q.kind->path) return q;
+  throw std::out_of_range(path);
+}
+
+double GaugeOf(const PersonState& state, PersonGauge gauge) {
+  return state.gauges[static_cast<std::size_t>(gauge)].value;
+}
+
+const InputState& InputOf(const PersonState& state, PersonInput input) {
+  return state.inputs[static_cast<std::size_t>(input)];
+}
+
+TEST(LiveStreams, MoveTheElbowAsInTheRecordedRun) {
+  const std::vector<PersonState> with = FollowStream(Tracker(), Elbow, 10, 600),
+                                 without = FollowStream(Tracker(), nullptr, 10, 600);
+  const Assessment a = AssessStream(Tracker(), Elbow, 10, 600);
+  ASSERT_EQ(a.measured.parts.size(), 1u);
+  EXPECT_GT(a.measured.parts[0].share, 0.97);
+  const QuantityResult& recorded = ResultOf(a, "strength.left_shoulder");
+  for (std::size_t i = 3; i + kLiveDelay < with.size(); ++i) {
+    const PersonState& state = with[i + kLiveDelay];
+    EXPECT_EQ(InputOf(state, PersonInput::kLeftElbow).status, InputStatus::kMeasured) << i;
+    EXPECT_NEAR(GaugeOf(state, PersonGauge::kLeftShoulderUse), recorded.values[i], 2e-3) << i;
+  }
+  EXPECT_EQ(InputOf(without.back(), PersonInput::kLeftElbow).status, InputStatus::kMissing);
+  EXPECT_GT(std::abs(GaugeOf(with.back(), PersonGauge::kLeftShoulderUse) -
+                     GaugeOf(without.back(), PersonGauge::kLeftShoulderUse)),
+            0.01);
+}
+
+TEST(LiveStreams, MoveTheActivationsAsInTheRecordedRun) {
+  const std::vector<PersonState> with = FollowStream(Electrode(), Voltage, 1, 1500),
+                                 without = FollowStream(Electrode(), nullptr, 1, 1500);
+  const Assessment a = AssessStream(Electrode(), Voltage, 1, 1500);
+  const QuantityResult& recorded = ResultOf(a, "muscles.right.largest");
+  double difference = 0;
+  // The filter has settled after 0.75 s, and is known until 1/6 s before the end.
+  for (std::size_t i = 75; i + kLiveDelayWithEmg < with.size(); ++i) {
+    const PersonState& state = with[i + kLiveDelayWithEmg];
+    EXPECT_EQ(InputOf(state, PersonInput::kRightEmg).status, InputStatus::kMeasured) << i;
+    EXPECT_NEAR(GaugeOf(state, PersonGauge::kRightActivation), recorded.values[i], 0.02) << i;
+    difference =
+        std::max(difference,
+                 std::abs(GaugeOf(state, PersonGauge::kRightActivation) -
+                          GaugeOf(without[i + kLiveDelayWithEmg], PersonGauge::kRightActivation)));
+  }
+  EXPECT_GT(difference, 0.1);
+  EXPECT_EQ(InputOf(without.back(), PersonInput::kRightEmg).status, InputStatus::kMissing);
+  EXPECT_EQ(InputOf(with.back(), PersonInput::kLeftEmg).status, InputStatus::kNone);
+}
+
+TEST(LiveStreams, RefuseWhatIsMeasuredTwice) {
+  const std::vector<tracks::StreamDescription> trackers = {Tracker(), Tracker()},
+                                               electrodes = {Electrode(), Electrode()};
+  EXPECT_THROW(LiveStreams{trackers}, InputError);
+  EXPECT_THROW(LiveStreams{electrodes}, InputError);
+}
+
+}  // namespace
+}  // namespace predictor::assessment
