@@ -17,14 +17,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Lets a library fail in a run with real arms. The watchdog must bring the arms to rest, and the
-// program must end by itself with the exit code `code` and print `words`. The recording must be
-// complete, or `repair` must recover everything except its last second.
+// Lets a library fail in a run with real arms. The watchdog must stop the arms, and the program
+// must end by itself with the exit code `code` and print `words`. The recording must be complete,
+// or `repair` must recover it. The library fails soon after the start, so that a late computer has
+// little time to stop the run before. Other tests let the watchdog stop arms in motion
+// (ProcessFault), and count what `repair` recovers (FailingController).
 void ExpectStoppedArms(const std::string& fault, int code, const std::string& words, bool whole) {
   test::FindPlugins();
   const test::TemporaryFolder own;
   const fs::path library = own / "at_time.so";
-  const std::string parameters = "damping=40 fault=" + fault + " at=1.5";
+  const std::string parameters = "damping=40 fault=" + fault + " at=0.3";
   fs::copy_file(fs::path(std::getenv("PREDICTOR_PACKAGE_PATH")) / "at_time.so", library);
   NoteTrial(library, parameters, true);
   setenv("PREDICTOR_PACKAGE_PATH", own.path().c_str(), 1);
