@@ -225,7 +225,7 @@ def summary_page(schema):
         "## A stop", "`stop` is the first stop, and `stops` lists all of them.", table(head, result_rows(defined["stop"]))])
 
 
-def evaluation_page(schema):
+def evaluation_page(schema, job):
     properties = schema["properties"]
     quantities = [(f"`{name}`", value["description"]) for name, value in properties["quantities"]["properties"].items()]
     one = next(iter(properties["quantities"]["properties"].values()))
@@ -238,7 +238,9 @@ def evaluation_page(schema):
         table(head, result_rows({"properties": rest})),
         "## quantities", table(("key", "quantity and SI unit"), quantities),
         "Each of them has these members:", table(head, result_rows(one)),
-        "## worksheets", "`RULA`, `REBA` and `OWAS` have these members each:", table(head, result_rows(sheet))])
+        "## worksheets", "`RULA`, `REBA` and `OWAS` have these members each:", table(head, result_rows(sheet)),
+        "## lifting_job.json", "What the command writes in addition for several recordings, from `predictor schema lifting-job`.",
+        table(head, result_rows(job))])
 
 
 def check_page(schema):
@@ -420,7 +422,7 @@ def main():
         "modules": modules_page(),
         "stop-causes": stop_causes_page(),
         "summary-json": summary_page(json_schema(program, "summary")),
-        "evaluation-json": evaluation_page(json_schema(program, "evaluation")),
+        "evaluation-json": evaluation_page(json_schema(program, "evaluation"), json_schema(program, "lifting-job")),
         "check-json": check_page(json_schema(program, "check")),
         "continuation-json": continuation_page(json_schema(program, "continuation")),
         "population-json": population_page(json_schema(program, "population")),
