@@ -269,7 +269,17 @@ TEST(Output, JsonFitsItsSchemaAndTablesAreComplete) {
   EXPECT_EQ(lines(DesignsCsv(study)), 1 + 2 * quantities);
   EXPECT_EQ(lines(DifferencesCsv(study)), 1 + quantities);
   EXPECT_NE(PopulationText(study).find("1 of them stopped"), std::string::npos);
-  EXPECT_NE(PopulationPage(study, "1").find("RULA"), std::string::npos);
+  const std::string page = PopulationPage(study, "1");
+  EXPECT_NE(page.find("RULA"), std::string::npos);
+  // The colours of the action levels run from green to dark red: scores 3 to 4 have the second of
+  // four colours, and scores 5 to 6 the third.
+  for (const char* bar : {"background: #d1b750\" title=\"3 to 4: investigate: 25 %\"",
+                          "background: #d57623\" title=\"5 to 6: change soon: 75 %\""})
+    EXPECT_NE(page.find(bar), std::string::npos) << bar;
+  // The limits of the scores are in the table.
+  for (const char* limit : {"<td>&gt; 4</td>", "<td>&gt; 7</td>", "<td>&gt; 3400</td>",
+                            "<td>&lt; 0.0</td>", "REBA's high risk begins at 8"})
+    EXPECT_NE(page.find(limit), std::string::npos) << limit;
 }
 
 TEST(RunJson, IsReadBackOrRefused) {

@@ -3,11 +3,13 @@
 #include "report/page.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
 #include "analysis/population/population.h"
 #include "assessment/design_differences.h"
+#include "assessment/output_picture.h"
 #include "core/format.h"
 #include "core/text.h"
 #include "evaluation/statistics_samples.h"
@@ -205,64 +207,93 @@ Plot HeightPlot(const PopulationStudy& study, std::size_t quantity) {
   return plot;
 }
 
-// Each bar shows the share of time with this score or a higher score. The bars overlap, and bars of
-// higher scores cover bars of lower scores. The visible part of each colour is therefore the share
-// of its score alone.
-Plot RulaPlot(const PopulationStudy& study) {
-  Plot plot;
-  plot.id = "rula-shares";
-  plot.title = "RULA: how long the people spend in each class";
-  plot.caption =
-      "Share of time at each action level, averaged over the people whose run was not "
-      "stopped.";
-  plot.x = DesignAxis(DesignNames(study));
-  PlotPanel panel;
-  panel.y = {.label = "Share of time", .unit = "%", .low = 0, .high = 100};
+// Returns the share of time at each score [0 … 1], averaged over the people whose run was not
+// stopped.
+std::array<double, kRulaScores> MeanShares(const PopulationDesign& design) {
+  std::array<double, kRulaScores> mean = {};
+  double people = 0;
+  for (const PopulationRun& run : design.runs) {
+    if (run.cause != StopCause::kNone) continue;
+    people += 1;
+    for (std::size_t score = 0; score < kRulaScores; ++score) mean[score] += run.rula_share[score];
+  }
+  for (double& share : mean) share /= std::max(people, 1.0);
+  return mean;
+}
+
+// Draws a bar for each design. The colours run from green to dark red, with the action level.
+std::string RulaBars(const PopulationStudy& study) {
   struct Level {
-    std::size_t from;
+    std::size_t from, to;  // scores
     const char* name;
   };
-  int color = 0;
-  for (const Level& level : {Level{1, "1 to 2: acceptable"}, Level{3, "3 to 4: investigate"},
-                             Level{5, "5 to 6: change soon"}, Level{7, "7: change now"}}) {
-    Points bars;
-    for (std::size_t i = 0; i < study.designs.size(); ++i) {
-      double sum = 0, people = 0;
-      for (const PopulationRun& run : study.designs[i].runs) {
-        if (run.cause != StopCause::kNone) continue;
-        people += 1;
-        for (std::size_t score = level.from; score < kRulaScores; ++score)
-          sum += run.rula_share[score];
-      }
-      bars.Add(static_cast<double>(i), people > 0 ? 100 * sum / people : 0);
+  constexpr std::array kLevels = {Level{1, 2, "1 to 2: acceptable"},
+                                  Level{3, 4, "3 to 4: investigate"},
+                                  Level{5, 6, "5 to 6: change soon"}, Level{7, 7, "7: change now"}};
+  const auto color = [&](std::size_t level) {
+    return assessment::LoadColor(static_cast<double>(level) /
+                                 static_cast<double>(kLevels.size() - 1));
+  };
+  std::string html = "<div class=\"scores\">";
+  for (const PopulationDesign& design : study.designs) {
+    const auto shares = MeanShares(design);
+    html += "<b>" + EscapeMarkup(design.name) + "</b><span></span><div class=\"shares\">";
+    for (std::size_t i = 0; i < kLevels.size(); ++i) {
+      double share = 0;
+      for (std::size_t score = kLevels[i].from; score <= kLevels[i].to; ++score)
+        share += shares[score];
+      if (share < 0.0005) continue;
+      const std::string percent = Formatted("%.0f %%", 100 * share);
+      Append(&html, "<span style=\"flex-grow: %.4f; background: %s%s\" title=\"%s: %s\">%s</span>",
+             share, color(i).c_str(), i == kLevels.size() - 1 ? "; color: #fff" : "",
+             kLevels[i].name, percent.c_str(), share < 0.06 ? "" : percent.c_str());
     }
-    PlotSeries series = Series(level.name, SeriesKind::kBars, color++, std::move(bars));
-    series.bar_width = 0.7;
-    panel.series.push_back(series);
+    html += "</div>";
   }
-  plot.panels = {panel};
-  return plot;
+  html += "</div>\n<p class=\"scale\">";
+  for (std::size_t i = 0; i < kLevels.size(); ++i)
+    Append(&html, "<i class=\"patch\" style=\"background: %s\"></i>%s ", color(i).c_str(),
+           kLevels[i].name);
+  return html +
+         "</p>\n<p class=\"caption\">Share of time at each action level, averaged over the people "
+         "whose run was not stopped.</p>\n";
+}
+
+// Returns the limit with the side that is beyond it, such as "> 3400", or a dash.
+std::string BeyondText(const StudyQuantity& kind) {
+  if (!kind.has_limit()) return "–";
+  return (kind.bad == assessment::Bad::kHigh ? "> " : "< ") +
+         Formatted("%.*f", kind.unit.decimals, kind.unit.factor * kind.limit);
 }
 
 std::string SummaryTable(const PopulationStudy& study) {
-  std::vector<std::vector<std::string>> rows = {{"Quantity"}};
-  for (const PopulationDesign& design : study.designs)
-    rows.front().push_back(EscapeMarkup(design.name));
-  rows.front().emplace_back("Origin");
+  std::vector<std::vector<std::string>> rows = {
+      {"Quantity", "Design", "Median", "90 % of the people", "Limit", "People beyond", "Origin"}};
   for (std::size_t q = 0; q < StudyQuantities().size(); ++q) {
     const StudyQuantity& kind = StudyQuantities()[q];
-    std::vector<std::string> row = {EscapeMarkup(WithUnit(kind.label, kind.unit))};
     for (std::size_t i = 0; i < study.designs.size(); ++i) {
       const DesignSummary& s = study.summaries[i][q];
-      std::string cell =
-          Shown(kind, s.median) + " (" + Shown(kind, s.p5) + " to " + Shown(kind, s.p95) + ")";
-      if (kind.has_limit()) cell += Formatted("; %.0f %% beyond", 100 * s.beyond.value());
-      row.push_back(s.people > 0 ? cell : "–");
+      const auto value = [&](const CensoredValue& x) {
+        return s.people > 0 ? Shown(kind, x) : std::string("–");
+      };
+      rows.push_back(
+          {i == 0 ? EscapeMarkup(WithUnit(kind.label, kind.unit)) : "",
+           EscapeMarkup(study.designs[i].name), value(s.median),
+           s.people > 0 ? value(s.p5) + " to " + value(s.p95) : "–", EscapeMarkup(BeyondText(kind)),
+           kind.has_limit() && s.people > 0 ? Formatted("%.0f %%", 100 * s.beyond.value()) : "–",
+           assessment::Name(kind.origin)});
     }
-    row.emplace_back(assessment::Name(kind.origin));
-    rows.push_back(row);
   }
   return HtmlTable(rows);
+}
+
+// States where the limits come from.
+std::string LimitWords() {
+  std::string words = "Limits:";
+  for (const StudyQuantity& kind : StudyQuantities())
+    if (kind.has_limit())
+      words += std::string(words.back() == ':' ? " " : "; ") + kind.label + ": " + kind.limit_name;
+  return words + ".";
 }
 
 }  // namespace
@@ -279,10 +310,12 @@ std::string PopulationPage(const PopulationStudy& study, const std::string& prog
   page.Html(SummaryTable(study));
   page.Paragraph(
       "For each person's 95th percentile over time (5th percentile for balance), the table shows "
-      "the median over the people and, in brackets, the range of 90 % of the people. The column "
-      "\"Beyond\" shows the share of the people who exceed the limit. If the emulator stopped a "
-      "run, only a bound of the person's value is known. The quantiles are those of Kaplan and "
-      "Meier, and a quantile that is itself only a bound has the sign ≥ or ≤.");
+      "the median over the people and the range of 90 % of the people. The column \"People "
+      "beyond\" "
+      "shows the share of the people who exceed the limit. If the emulator stopped a run, only a "
+      "bound of the person's value is known. The quantiles are those of Kaplan and Meier, and a "
+      "quantile that is itself only a bound has the sign ≥ or ≤.");
+  page.Paragraph(LimitWords());
   if (!study.differences_of_designs.empty()) {
     page.Paragraph(assessment::kDesignsDiffer);
     std::string list;
@@ -298,7 +331,7 @@ std::string PopulationPage(const PopulationStudy& study, const std::string& prog
   });
   if (study.designs.size() > 1) {
     page.Section("rula", "Postures by RULA");
-    page.Figure(RulaPlot(study));
+    page.Html(RulaBars(study));
   }
   for (const char* path : {"lower_back_compression_n", "hand_force_n", "shoulder_use", "elbow_use",
                            "trunk_flexion_rad", "upper_arm_elevation_rad"}) {

@@ -86,13 +86,18 @@ std::string DesignText(const PopulationStudy& study, std::size_t design) {
   std::string text;
   AppendLine(&text, "\n%s: %zu people, %d of them stopped by the emulator", d.name.c_str(),
              d.runs.size(), StopsOf(d));
-  AppendLine(&text, "%-50s %9s  %-17s %s", "", "median", "90 % of people", "beyond the limit");
+  AppendLine(&text, "%-50s %9s  %-17s %-8s %s", "", "median", "90 % of people", "limit",
+             "people beyond it");
   for (std::size_t q = 0; q < StudyQuantities().size(); ++q) {
     const StudyQuantity& kind = StudyQuantities()[q];
     const DesignSummary& s = study.summaries[design][q];
     const std::string range = Shown(kind, s.p5) + " … " + Shown(kind, s.p95);
-    AppendLine(&text, "%-50s %9s  %-17s %s", WithUnit(kind.label, kind.unit).c_str(),
-               Shown(kind, s.median).c_str(), range.c_str(),
+    const std::string limit =
+        kind.has_limit()
+            ? (kind.bad == assessment::Bad::kHigh ? "> " : "< ") + Shown(kind, kind.limit)
+            : "";
+    AppendLine(&text, "%-50s %9s  %-17s %-8s %s", WithUnit(kind.label, kind.unit).c_str(),
+               Shown(kind, s.median).c_str(), range.c_str(), limit.c_str(),
                kind.has_limit() ? Percent(s.beyond).c_str() : "");
   }
   if (const std::string beyond = BeyondLifftSentence(d); !beyond.empty())
