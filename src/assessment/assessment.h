@@ -80,6 +80,8 @@ struct Assessment {
   std::vector<std::string> warnings;        // sentences about doubtful input
   std::vector<std::string> assumptions;
   std::vector<NotEvaluable> not_evaluable;
+
+  bool simulated() const { return operator_type == "virtual"; }  // the operator
 };
 
 struct AssessOptions {

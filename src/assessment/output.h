@@ -56,8 +56,8 @@ std::string NumberText(const Unit& unit, double x);
 std::string ValueText(const QuantityKind& kind, double x);
 // Returns an interval as "low … high" in the display unit, or "" if there is no interval.
 std::string RangeText(const QuantityKind& kind, const std::optional<person::Interval>& range);
-// Returns an explanation of the words for Origin, which begins with "measured by ...".
-std::string OriginWords();
+// Returns an explanation of the words for Origin.
+std::string OriginWords(bool simulated);
 // Returns words that begin with a comma if a load is beyond the range of the tool, and otherwise
 // "".
 std::string RangeWords(const DamageResult& damage);

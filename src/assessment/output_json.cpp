@@ -205,7 +205,7 @@ Json ParticipantOf(const Assessment& a) {
 
 Json PersonOf(const Assessment& a) {
   const BodySpec& body = a.setup.body;
-  return {{"simulated", a.operator_type == "virtual"},
+  return {{"simulated", a.simulated()},
           {"operator", a.operator_type},
           {"height_m", body.height},
           {"mass_kg", body.mass},

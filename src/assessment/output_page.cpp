@@ -154,7 +154,7 @@ std::string QuantityTable(const Assessment& a) {
     const std::string name = std::string(kind.group) + ", " + kind.label;
     rows.push_back({EscapeMarkup(WithUnit(name, kind.unit)), value(q.mean), value(q.p5),
                     value(q.p95), value(q.worst()), RangeOrDash(kind, q.tail_interval),
-                    kind.limit > 0 ? value(kind.limit) : "–", Name(kind.origin)});
+                    kind.limit > 0 ? value(kind.limit) : "–", Name(kind.origin, a.simulated())});
   }
   return HtmlTable(rows);
 }
@@ -327,7 +327,7 @@ void AddParts(const Assessment& a, Outline* outline) {
       "p5 and p95: percentiles over the judged time, of the nominal posture. The column \"Tail\" "
       "contains the 90 % interval of p95 (of p5 for balance) over 64 possible postures and "
       "bodies.");
-  page.Paragraph(OriginWords() + ".");
+  page.Paragraph(OriginWords(a.simulated()) + ".");
   AddJoints(a, outline);
   outline->Begin("worksheets", "Scores (standard)");
   page.Html(ScoreBars(a));
@@ -359,11 +359,13 @@ void AddComparison(std::span<const PersonOfRun> runs, ReportPage* page) {
       AddReason(run, page);
     }
   if (rows[0].size() < 2) return;
+  const bool simulated = std::ranges::all_of(
+      runs, [](const PersonOfRun& run) { return !run.assessment || run.assessment->simulated(); });
   for (const QuantityKind& kind : Quantities()) {
     if (kind.of_joint) continue;
     std::vector<std::string> row = {
         EscapeMarkup(WithUnit(std::string(kind.group) + ", " + kind.label, kind.unit) + ", " +
-                     Name(kind.origin))};
+                     Name(kind.origin, simulated))};
     for (const PersonOfRun& run : runs) {
       if (!run.assessment) continue;
       const auto& all = run.assessment->quantities;

@@ -25,7 +25,7 @@ void AppendQuantities(const Assessment& a, std::string* text) {
     AppendLine(text, "%-36s %8s %8s %8s %8s  %-17s %s", name.c_str(),
                ValueText(kind, q.mean).c_str(), ValueText(kind, q.p5).c_str(),
                ValueText(kind, q.p95).c_str(), ValueText(kind, q.worst()).c_str(),
-               RangeText(kind, q.tail_interval).c_str(), Name(kind.origin));
+               RangeText(kind, q.tail_interval).c_str(), Name(kind.origin, a.simulated()));
   }
 }
 
@@ -95,9 +95,12 @@ std::string RangeText(const QuantityKind& kind, const std::optional<person::Inte
   return ValueText(kind, range->low) + " … " + ValueText(kind, range->high);
 }
 
-std::string OriginWords() {
-  return "Measured: by the sensors of the arms; modelled: by the model of the body; standard: by a "
-         "published method, from measured and modelled values";
+std::string OriginWords(bool simulated) {
+  return std::string(simulated
+                         ? "Simulated sensor: by the simulated sensors of simulated hands or arms"
+                         : "Measured: by the sensors of the arms") +
+         "; modelled: by the model of the body; standard: by a published method, from the other "
+         "values";
 }
 
 std::string NumberText(const Unit& unit, double x) {
@@ -206,7 +209,7 @@ std::string AssessmentText(const Assessment& a) {
   AppendLine(&text, "%s", Printable(a.scenario).c_str());
   AppendLine(&text, "%s %s", OperatorSentence(a).c_str(), ReachSentence(a).c_str());
   for (const std::string& line : a.warnings) AppendLine(&text, "Warning: %s", line.c_str());
-  AppendLine(&text, "%s.", OriginWords().c_str());
+  AppendLine(&text, "%s.", OriginWords(a.simulated()).c_str());
   AppendSentences("Measured in addition to the hands", a.measured.parts, &text);
   AppendSentences("Measured signals", a.measured.signals, &text);
   AppendSentences("Measured muscles (electromyograms)", a.measured.emg.channels, &text);

@@ -121,6 +121,10 @@ const char* Name(Origin origin) {
   return kNames[static_cast<std::size_t>(origin)];
 }
 
+const char* Name(Origin origin, bool simulated) {
+  return simulated && origin == Origin::kMeasured ? "simulated sensor" : Name(origin);
+}
+
 std::span<const QuantityKind> Quantities() {
   static const std::vector<QuantityKind> kAll = [] {
     std::vector<QuantityKind> all(std::begin(kQuantities), std::end(kQuantities));

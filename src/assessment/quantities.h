@@ -16,6 +16,8 @@ enum class Origin {
   kStandard,  // computed by a published method or worksheet, from measured and modelled values
 };
 const char* Name(Origin origin);
+// Returns "simulated sensor" instead of "measured" if the operator was simulated.
+const char* Name(Origin origin, bool simulated);
 
 struct Moment {
   const Frame& frame;

@@ -276,6 +276,11 @@ TEST(Output, JsonFitsItsSchemaAndTablesAreComplete) {
   for (const char* bar : {"background: #d1b750\" title=\"3 to 4: investigate: 25 %\"",
                           "background: #d57623\" title=\"5 to 6: change soon: 75 %\""})
     EXPECT_NE(page.find(bar), std::string::npos) << bar;
+  EXPECT_NE(page.find("one simulated person (simulated sensor)"), std::string::npos);
+  for (const std::string& output : {DesignsCsv(study), PopulationJson(study)}) {
+    EXPECT_NE(output.find("simulated sensor"), std::string::npos);
+    EXPECT_EQ(output.find("measured"), std::string::npos);
+  }
   // The limits of the scores are in the table.
   for (const char* limit : {"<td>&gt; 4</td>", "<td>&gt; 7</td>", "<td>&gt; 3400</td>",
                             "<td>&lt; 0.0</td>", "REBA's high risk begins at 8"})

@@ -285,6 +285,20 @@ TEST(Assessment, AComparisonStatesWhatTheDesignsDifferIn) {
   EXPECT_TRUE(DesignDifferences(a, a).empty());
 }
 
+// A simulated run measures nothing: its sensors are simulated.
+TEST(Assessment, ASimulatedRunHasSimulatedSensors) {
+  Assessment a = Judge(20);
+  a.safety.emplace();
+  for (const bool simulated : {true, false}) {
+    a.operator_type = simulated ? "virtual" : "person";
+    a.safety->simulated = simulated;
+    for (const std::string& output : {AssessmentText(a), AssessmentPage(a, "1.0")}) {
+      EXPECT_EQ(output.find("imulated sensor") != std::string::npos, simulated);
+      EXPECT_EQ(output.find("What the hands felt (measured)") == std::string::npos, simulated);
+    }
+  }
+}
+
 // ---- output -----------------------------------------------------------------------------------
 
 using Json = nlohmann::json;

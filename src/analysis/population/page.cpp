@@ -118,8 +118,8 @@ Plot PeoplePlot(const PopulationStudy& study, std::size_t quantity) {
   Plot plot;
   plot.id = std::string("people-") + std::to_string(quantity);
   plot.title = std::string(kind.label) + ": every person";
-  plot.caption = std::string("Each dot is one simulated person (") + assessment::Name(kind.origin) +
-                 "). The same people perform every design.";
+  plot.caption = std::string("Each dot is one simulated person (") +
+                 assessment::Name(kind.origin, true) + "). The same people perform every design.";
   plot.x = DesignAxis(DesignNames(study));
   plot.panels = {PeoplePanel(study, quantity)};
   return plot;
@@ -281,7 +281,7 @@ std::string SummaryTable(const PopulationStudy& study) {
            EscapeMarkup(study.designs[i].name), value(s.median),
            s.people > 0 ? value(s.p5) + " to " + value(s.p95) : "–", EscapeMarkup(BeyondText(kind)),
            kind.has_limit() && s.people > 0 ? Formatted("%.0f %%", 100 * s.beyond.value()) : "–",
-           assessment::Name(kind.origin)});
+           assessment::Name(kind.origin, true)});
     }
   }
   return HtmlTable(rows);

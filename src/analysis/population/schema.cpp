@@ -31,7 +31,7 @@ const schema::Words kWords = {
       "people of whom a load exceeds 100 N·m, so that their damage by LiFFT is extrapolated"},
      {"quantities", "results over the people, by quantity"},
      {"unit", "SI unit"},
-     {"origin", "measured, modelled or standard"},
+     {"origin", "simulated sensor, modelled or standard"},
      {"known_as_bounds",
       "people whose run was stopped, so that only a bound of their value is known"},
      {"median", "median of the people"},

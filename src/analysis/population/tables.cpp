@@ -52,7 +52,7 @@ Json ToJson(const Share& share) {
 
 Json SummaryJson(const StudyQuantity& kind, const DesignSummary& s) {
   return {{"unit", kind.unit.si},
-          {"origin", assessment::Name(kind.origin)},
+          {"origin", assessment::Name(kind.origin, true)},
           {"people", s.people},
           {"known_as_bounds", s.stopped},
           {"median", NumberOrNull(s.median.value)},
@@ -182,7 +182,7 @@ std::string DesignsCsv(const PopulationStudy& study) {
                                       std::to_string(BeyondLifft(design)),
                                       kind.path,
                                       kind.unit.si,
-                                      assessment::Name(kind.origin),
+                                      assessment::Name(kind.origin, true),
                                       std::to_string(s.people),
                                       std::to_string(s.stopped),
                                       Cell(s.median.value),

@@ -108,6 +108,7 @@ SafetyAssessment JudgeSafety(const Scenario& scenario, const PersonSetup& setup,
   if (run.scene().empty())
     throw InputError("No simulated time passed in this run, so there is nothing to judge.");
   SafetyAssessment safety;
+  safety.simulated = scenario.operator_.type == "virtual";
   safety.exposure = run.exposure().results();
   for (const StopWindow& window : run.stops().windows())
     safety.stops.push_back(JudgeStop(setup, window, options.intervals));

@@ -61,6 +61,7 @@ struct RigLimit {
 };
 
 struct SafetyAssessment {
+  bool simulated = false;        // the operator
   std::vector<Result> exposure;  // measured
   std::vector<StopJudgement> stops;
   Separation separation;

@@ -40,8 +40,8 @@ std::string LabelOf(const Result& result, int hand) {
 }
 
 // Returns the results of each hand side by side, followed by the results of the whole run.
-SafetyTable HandTable(const std::vector<Result>& results) {
-  SafetyTable table{.title = "What the hands felt", .origin = "measured"};
+SafetyTable HandTable(const std::vector<Result>& results, bool simulated) {
+  SafetyTable table{.title = "What the hands felt", .origin = Name(Origin::kMeasured, simulated)};
   table.rows.push_back({"", "left", "right", "how it was computed"});
   std::map<std::string, std::size_t> row_of;
   for (const Result& result : results) {
@@ -184,8 +184,8 @@ SafetyTable MarginTable(const std::vector<Margin>& margins) {
   return table;
 }
 
-SafetyTable RigTable(const std::vector<RigLimit>& limits) {
-  SafetyTable table{.title = "What this rig renders", .origin = "measured"};
+SafetyTable RigTable(const std::vector<RigLimit>& limits, bool simulated) {
+  SafetyTable table{.title = "What this rig renders", .origin = Name(Origin::kMeasured, simulated)};
   table.rows.push_back({"", "up to", "reached", "share"});
   bool censored = false;
   for (const RigLimit& limit : limits) {
@@ -206,12 +206,12 @@ SafetyTable RigTable(const std::vector<RigLimit>& limits) {
 }  // namespace
 
 std::vector<SafetyTable> SafetyTables(const SafetyAssessment& safety) {
-  std::vector<SafetyTable> tables = {HandTable(safety.exposure)};
+  std::vector<SafetyTable> tables = {HandTable(safety.exposure, safety.simulated)};
   for (const StopJudgement& stop : safety.stops) tables.push_back(StopTable(stop));
   tables.push_back(LettingGoTable(safety));
   if (safety.contact) tables.push_back(ContactTable(*safety.contact));
   if (!safety.margins.empty()) tables.push_back(MarginTable(safety.margins));
-  tables.push_back(RigTable(safety.rig));
+  tables.push_back(RigTable(safety.rig, safety.simulated));
   return tables;
 }
 
