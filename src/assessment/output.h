@@ -72,6 +72,10 @@ inline constexpr const char* kTrialModel = "Peternel's model with the stated tri
 inline constexpr const char* kEnduranceModel = "Measured endurance at the mean load";
 // Returns a time such as "12 min", or "not within 8 h".
 std::string MinutesText(double seconds);
+// Returns the probable score with its 90 % range over the possible postures, what the method
+// advises, and the scores of the nominal posture. The nominal posture alone gives no advice,
+// because another possible posture often has another score.
+std::string Sentence(const WorksheetResult& w);
 // Returns a sentence such as "The body reaches the handles 98 % of the time ...".
 std::string ReachSentence(const Assessment& a);
 // Returns a sentence that states who moved the handles.

@@ -180,21 +180,27 @@ std::string ScoreBar(const WorksheetResult& w, const std::vector<double>& shares
 }
 
 std::string ScoreBars(const Assessment& a) {
-  std::string html = "<div class=\"scores\">";
+  std::string html;
+  for (const WorksheetResult& w : a.worksheets)
+    html += "<p>" + EscapeMarkup(Sentence(w)) + "</p>\n";
+  html += "<div class=\"scores\">";
   for (const WorksheetResult& w : a.worksheets) {
-    html +=
-        std::string("<b>") + w.kind->name + "</b><span>share of time</span>" + ScoreBar(w, w.share);
+    html += std::string("<b>") + w.kind->name + "</b><span>nominal posture</span>" +
+            ScoreBar(w, w.share);
     if (!w.probability.empty())
-      html += "<b></b><span>probability</span>" + ScoreBar(w, w.probability);
+      html += "<b></b><span>possible postures</span>" + ScoreBar(w, w.probability);
   }
   return html +
-         "</div>\n<p class=\"caption\">Colours: what the method advises, from no action "
+         "</div>\n<p class=\"caption\">Bars: the share of time at each score in the nominal "
+         "posture, and the probability of each score over the possible postures. Colours: what the "
+         "method advises, from no action "
          "(light green) to action now (dark red).</p>\n";
 }
 
 std::string ScoreTable(const Assessment& a) {
   std::vector<std::vector<std::string>> rows = {
-      {"Method", "Score", "Share of time", "Probability", "What the method advises"}};
+      {"Method", "Score", "Share of time, nominal posture", "Probability, possible postures",
+       "What the method advises"}};
   for (const WorksheetResult& w : a.worksheets)
     for (std::size_t score = 1; score < w.share.size(); ++score) {
       const double likely = w.probability.empty() ? 0 : w.probability[score];

@@ -48,18 +48,39 @@ void AppendJoints(const Assessment& a, std::string* text) {
   AppendLine(text, "%s", JointTableWords().c_str());
 }
 
+struct LikelyScores {
+  std::size_t probable = 0, low = 0, high = 0;  // the most probable score, and the 90 % range
+};
+
+// Needs probabilities. Score 0 stands for an unknown posture.
+LikelyScores LikelyOf(const WorksheetResult& w) {
+  double total = 0;
+  for (std::size_t score = 1; score < w.probability.size(); ++score) total += w.probability[score];
+  LikelyScores likely;
+  double below = 0;
+  for (std::size_t score = 1; score < w.probability.size(); ++score) {
+    const double p = w.probability[score];
+    if (p > (likely.probable == 0 ? 0 : w.probability[likely.probable])) likely.probable = score;
+    if (below <= 0.05 * total && below + p > 0.05 * total) likely.low = score;
+    if (below < 0.95 * total && below + p >= 0.95 * total) likely.high = score;
+    below += p;
+  }
+  return likely;
+}
+
 void AppendWorksheets(const Assessment& a, std::string* text) {
   AppendLine(text, "\nScores (standard)");
   for (const WorksheetResult& w : a.worksheets) {
-    AppendLine(text, "  %s: %d at worst, at most %d for 95 %% of the time. %s", w.kind->name,
-               w.worst, w.p95, w.kind->action(w.p95).sentence);
-    std::string shares;
+    AppendLine(text, "  %s", Sentence(w).c_str());
+    std::string shares = "    score: share of time in the nominal posture";
+    if (!w.probability.empty()) shares += " (probability over the possible postures)";
+    const char* before = "; ";
     for (std::size_t score = 1; score < w.share.size(); ++score) {
       const double likely = w.probability.empty() ? 0 : w.probability[score];
       if (w.share[score] < 0.005 && likely < 0.005) continue;
-      shares += shares.empty() ? "    score " : ", ";
-      Append(&shares, "%zu: %.0f %%", score, 100 * w.share[score]);
-      if (!w.probability.empty()) Append(&shares, " (probability %.0f %%)", 100 * likely);
+      Append(&shares, "%s%zu: %.0f %%", before, score, 100 * w.share[score]);
+      if (!w.probability.empty()) Append(&shares, " (%.0f %%)", 100 * likely);
+      before = ", ";
     }
     AppendLine(text, "%s", shares.c_str());
   }
@@ -182,6 +203,22 @@ std::string Sentence(const DamageResult& damage) {
 
 std::string MinutesText(double seconds) {
   return seconds < 8 * 3600 ? Formatted("%.0f min", seconds / 60) : "not within 8 h";
+}
+
+std::string Sentence(const WorksheetResult& w) {
+  const std::string nominal = Formatted(
+      "In the nominal posture: %d at worst, at most %d for 95 %% of the time.", w.worst, w.p95);
+  if (w.probability.empty() || LikelyOf(w).probable == 0)
+    return std::string(w.kind->name) + ": " + nominal +
+           " The possible postures were not evaluated, so no advice follows.";
+  const LikelyScores likely = LikelyOf(w);
+  const auto advice = [&](std::size_t score) { return w.kind->action(static_cast<int>(score)); };
+  std::string text =
+      Formatted("%s: probably %zu (90 %%: %zu to %zu). %s", w.kind->name, likely.probable,
+                likely.low, likely.high, advice(likely.probable).sentence);
+  if (advice(likely.high).level != advice(likely.probable).level)
+    Append(&text, " With a score of %zu: %s", likely.high, advice(likely.high).sentence);
+  return text + " " + nominal;
 }
 
 std::string Sentence(const FatigueResult& fatigue) {

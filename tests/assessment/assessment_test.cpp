@@ -299,6 +299,34 @@ TEST(Assessment, ASimulatedRunHasSimulatedSensors) {
   }
 }
 
+// The possible postures decide about the advice. Probabilities: 27 % for 1, 8 % for 2, 38 % for 3
+// and 27 % for 4, while the nominal posture has the score 2 all the time.
+TEST(Assessment, TheProbableScoreComesBeforeTheNominalOne) {
+  Assessment a = Judge(20);
+  WorksheetResult& reba = *std::ranges::find_if(
+      a.worksheets, [](const auto& w) { return std::string(w.kind->name) == "REBA"; });
+  reba.worst = reba.p95 = 2;
+  const std::string alone = Sentence(reba);
+  EXPECT_NE(alone.find("no advice follows"), std::string::npos) << alone;
+  EXPECT_EQ(alone.find(reba.kind->action(2).sentence), std::string::npos) << alone;
+  reba.probability.assign(static_cast<std::size_t>(reba.kind->most) + 1, 0);
+  reba.probability[1] = 0.27;
+  reba.probability[2] = 0.08;
+  reba.probability[3] = 0.38;
+  reba.probability[4] = 0.27;
+  EXPECT_EQ(Sentence(reba).find("REBA: probably 3 (90 %: 1 to 4). "), 0U) << Sentence(reba);
+  EXPECT_NE(AssessmentPage(a, "1.0").find("REBA: probably 3 (90 %: 1 to 4). "), std::string::npos);
+  // A tail of 4 % is outside the range of 90 %. A tail of 6 % with a higher action level has its
+  // own advice.
+  reba.probability = {0, 0.04, 0.06, 0.86, 0.04};
+  reba.probability.resize(static_cast<std::size_t>(reba.kind->most) + 1);
+  EXPECT_EQ(Sentence(reba).find("REBA: probably 3 (90 %: 2 to 3). "), 0U) << Sentence(reba);
+  reba.probability[3] = 0.84;
+  reba.probability[4] = 0;
+  reba.probability[8] = 0.06;
+  EXPECT_NE(Sentence(reba).find("With a score of 8: "), std::string::npos) << Sentence(reba);
+}
+
 // ---- output -----------------------------------------------------------------------------------
 
 using Json = nlohmann::json;
