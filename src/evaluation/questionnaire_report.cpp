@@ -108,9 +108,7 @@ std::string Figure(const char* format, double value) {
 
 std::string PeopleText(const ConditionSummary& c) {
   std::string text = std::to_string(c.people) + (c.people == 1 ? " person" : " people");
-  if (c.ages > 0)
-    text += ", age " + Figure("%.2f", c.age_mean) + " ± " + Figure("%.2f", c.age_deviation) +
-            " years (" + std::to_string(c.ages) + " stated)";
+  if (c.ages > 0) text += ", age " + AgeText(c) + " years (" + std::to_string(c.ages) + " stated)";
   const int silent = c.people - c.female - c.male - c.other;
   text += ", " + std::to_string(c.female) + " female, " + std::to_string(c.male) + " male, " +
           std::to_string(c.other) + " other, " + std::to_string(silent) + " not stated";
@@ -176,6 +174,11 @@ std::string TestsInWords() {
 }
 
 }  // namespace
+
+std::string AgeText(const ConditionSummary& c) {
+  if (c.ages == 1) return Figure("%.0f", c.age_mean);
+  return Figure("%.2f", c.age_mean) + " ± " + Figure("%.2f", c.age_deviation);
+}
 
 StatementSummary SummariseCounts(const ScoreCounts& counts) {
   StatementSummary summary;

@@ -65,6 +65,10 @@ std::string ProbabilityText(double p);
 // otherwise an empty text. The smallest two-sided p of n values is 2^(1 − n).
 std::string TooFewText(const ShiftSummaries& summaries);
 
+// Returns the mean and the standard deviation of the ages, or the age of a single person, which has
+// no deviation.
+std::string AgeText(const ConditionSummary& c);
+
 // Returns a table for the terminal.
 std::string SurveyTable(const SurveyReport& report);
 

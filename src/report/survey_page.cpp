@@ -52,9 +52,7 @@ std::string PeopleText(const ConditionSummary& c) {
                      std::to_string(c.female) + " female, " + std::to_string(c.male) + " male, " +
                      std::to_string(c.other) + " other";
   if (c.ages > 0)
-    text += "; age " + Figure("%.1f", c.age_mean) +
-            (c.ages > 1 ? " ± " + Figure("%.1f", c.age_deviation) : "") + " years (" +
-            std::to_string(c.ages) + " gave their age)";
+    text += "; age " + AgeText(c) + " years (" + std::to_string(c.ages) + " gave their age)";
   return text + ".";
 }
 

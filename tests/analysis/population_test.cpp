@@ -74,6 +74,12 @@ TEST(Share, HasThePublishedIntervals) {
   check(0, 20, 0, 0.1611);
   check(1, 29, 0.0061, 0.1718);
   EXPECT_EQ(ShareOf(0, 0).high, 1);
+  // Rounding errors do not appear in tables.
+  for (const int of : {7, 9, 198, 200}) {
+    EXPECT_EQ(ShareOf(0, of).low, 0) << of;
+    EXPECT_EQ(ShareOf(of, of).high, 1) << of;
+    EXPECT_EQ(ShareOf(of - 1, of, 1).high, 1) << of;
+  }
 }
 
 // Makes up two designs. In the second design, each person's values are larger by `shift`.
@@ -245,6 +251,20 @@ void ExpectDescribed(const nlohmann::json& schema, const nlohmann::json& json) {
   } else {
     EXPECT_NE(schema["type"].dump().find(json.is_string() ? "string" : "n"), std::string::npos);
   }
+}
+
+TEST(Output, ContainsNoMinusZero) {
+  PopulationStudy study = MadeUp(4, 0);
+  for (PopulationDesign& design : study.designs)
+    for (PopulationRun& run : design.runs)
+      for (double& value : run.values) value = run.person == 2 ? -0.0 : -1e-9;
+  Compare(&study);
+  EXPECT_EQ(PersonsCsv(study).find(",-0,"), std::string::npos);
+  const std::string text = PopulationText(study), page = PopulationPage(study, "1");
+  for (const char* minus_zero : {" -0 ", " -0.0 ", " -0.00000 "})
+    EXPECT_EQ(text.find(minus_zero), std::string::npos) << minus_zero;
+  for (const char* minus_zero : {"<td>-0<", "<td>-0.0<", "<td>-0 to", " to -0<"})
+    EXPECT_EQ(page.find(minus_zero), std::string::npos) << minus_zero;
 }
 
 TEST(Output, JsonFitsItsSchemaAndTablesAreComplete) {

@@ -425,5 +425,16 @@ TEST(SurveyReport, ComparesThePapersAnswersWithNeutral) {
   EXPECT_NE(table.find("S1    17      1   +1.50"), std::string::npos) << table;
 }
 
+TEST(SurveyTable, ASingleAgeHasNoDeviation) {
+  ConditionSummary c;
+  c.ages = 1;
+  c.age_mean = 23;
+  c.age_deviation = NAN;
+  EXPECT_EQ(AgeText(c), "23");
+  c.ages = 2;
+  c.age_deviation = 1.5;
+  EXPECT_EQ(AgeText(c), "23.00 ± 1.50");
+}
+
 }  // namespace
 }  // namespace predictor

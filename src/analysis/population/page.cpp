@@ -263,7 +263,7 @@ std::string RulaBars(const PopulationStudy& study) {
 std::string BeyondText(const StudyQuantity& kind) {
   if (!kind.has_limit()) return "–";
   return (kind.bad == assessment::Bad::kHigh ? "> " : "< ") +
-         Formatted("%.*f", kind.unit.decimals, kind.unit.factor * kind.limit);
+         Fixed(kind.unit.factor * kind.limit, kind.unit.decimals);
 }
 
 std::string SummaryTable(const PopulationStudy& study) {

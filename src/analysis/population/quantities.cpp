@@ -20,7 +20,7 @@ constexpr Unit kNewtons = {"N", "N", 1, 1};
 constexpr Unit kWholeNewtons = {"N", "N", 1, 0};
 constexpr Unit kAngle = {"rad", "°", kDegrees, 0};
 constexpr Unit kShares = {"", "%", 100, 0};
-constexpr Unit kFineShares = {"", "%", 100, 2};
+constexpr Unit kFineShares = {"", "%", 100, 5};  // one run is a small part of a day
 constexpr Unit kScore = {"", "", 1, 0};
 constexpr Unit kLength = {"m", "cm", 100, 1};
 

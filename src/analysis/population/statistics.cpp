@@ -127,8 +127,9 @@ Share ShareOf(int count, int of, int undecided) {
     const double half = kTwoSided95 / (1 + z2 / n) * std::sqrt(p * (1 - p) / n + z2 / (4 * n * n));
     return std::clamp(centre + side * half, 0.0, 1.0);
   };
-  share.low = bound(count / n, -1);
-  share.high = bound((count + undecided) / n, 1);
+  // At the ends, the formula gives exactly 0 and 1, apart from rounding errors.
+  share.low = count == 0 ? 0 : bound(count / n, -1);
+  share.high = count + undecided == of ? 1 : bound((count + undecided) / n, 1);
   return share;
 }
 

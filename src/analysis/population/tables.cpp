@@ -16,11 +16,12 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kSignificant = 0.05;
 
-std::string Cell(double x) { return std::isfinite(x) ? Formatted("%.6g", x) : ""; }
+// Adding 0 turns −0 into 0.
+std::string Cell(double x) { return std::isfinite(x) ? Formatted("%.6g", x + 0.0) : ""; }
 const char* SexName(Sex sex) { return sex == Sex::kMale ? "male" : "female"; }
 
 std::string Shown(const StudyQuantity& kind, double x) {
-  return std::isfinite(x) ? Formatted("%.*f", kind.unit.decimals, kind.unit.factor * x) : "–";
+  return std::isfinite(x) ? Fixed(kind.unit.factor * x, kind.unit.decimals) : "–";
 }
 
 // Returns the names of the quantiles that are only bounds, separated by spaces.
