@@ -63,7 +63,7 @@ std::vector<ComparedRow> RowsOf(const Comparison& comparison) {
   std::vector<ComparedRow> rows = {HeaderOf(comparison)};
   for (const Difference& d : comparison.differences) {
     const QuantityKind& kind = *d.kind;
-    if (kind.of_joint) continue;
+    if (!kind.has_row()) continue;
     ComparedRow row = {WithUnit(std::string(kind.group) + ", " + kind.label, kind.unit),
                        ValueText(kind, d.a),
                        ValueText(kind, d.b),

@@ -92,6 +92,7 @@ struct Row {
   const char* label;
   Unit unit;
   Bad bad = Bad::kHigh;
+  bool only_in_files = false;
 };
 
 // The quantities, in the order of MuscleValue.
@@ -120,7 +121,8 @@ constexpr Row kRows[kMuscleValues] = {
     {{"muscles.left.stiffest_n_per_m", "muscles.right.stiffest_n_per_m"},
      "hand's largest stiffness",
      kRate,
-     Bad::kLow},
+     Bad::kLow,
+     true},
 };
 
 template <int Hand, int Value>
@@ -137,6 +139,7 @@ void AddRows(std::integer_sequence<int, Values...>, std::vector<QuantityKind>* k
     kind.hand = Hand;
     kind.bad = row.bad;
     kind.nominal_only = true;
+    kind.only_in_files = row.only_in_files;
     kinds->push_back(kind);
   };
   (add(kRows[Values], Of<Hand, Values>), ...);
@@ -179,8 +182,12 @@ void AddMuscleWords(const NominalChain& chain, std::vector<std::string>* warning
                     std::vector<std::string>* assumptions, std::vector<NotEvaluable>* gaps) {
   assumptions->emplace_back(
       "The model distributes the torques among the muscles such that the sum of squared "
-      "activations is smallest. The model assumes no co-contraction, so activations and stiffness "
-      "are lower bounds.");
+      "activations is smallest. The model assumes no co-contraction, so activations are lower "
+      "bounds. "
+      "The missing co-contraction makes the hand's stiffness too low, and rigid tendons make it "
+      "too "
+      "high. The hand's largest stiffness is two to four times the measured values, so only the "
+      "JSON and CSV files contain it.");
   gaps->push_back({"muscles that grip, and the muscle forces on the shoulder joint",
                    "the effort of the grip is not measured, and the shoulder girdle does not move "
                    "in the model"});

@@ -72,7 +72,7 @@ Plot GroupPlot(const Assessment& a, const std::string& group, const std::string&
   plot.group = "time";
   bool intervals = false;
   for (const QuantityResult& q : a.quantities) {
-    if (group != q.kind->group) continue;
+    if (group != q.kind->group || q.kind->only_in_files) continue;
     intervals = intervals || !q.low.empty();
     PlotPanel* panel = plot.panels.empty() ? nullptr : &plot.panels.back();
     const bool joins = panel && panel->y.unit == q.kind->unit.shown && panel->series.size() < 4 &&
@@ -149,7 +149,7 @@ std::string QuantityTable(const Assessment& a) {
       {"Quantity", "Mean", "p5", "p95", "Worst", "Tail, 90 %", "Limit", "Origin"}};
   for (const QuantityResult& q : a.quantities) {
     const QuantityKind& kind = *q.kind;
-    if (kind.of_joint) continue;
+    if (!kind.has_row()) continue;
     const auto value = [&](double x) { return ValueText(kind, x); };
     const std::string name = std::string(kind.group) + ", " + kind.label;
     rows.push_back({EscapeMarkup(WithUnit(name, kind.unit)), value(q.mean), value(q.p5),
@@ -368,7 +368,7 @@ void AddComparison(std::span<const PersonOfRun> runs, ReportPage* page) {
   const bool simulated = std::ranges::all_of(
       runs, [](const PersonOfRun& run) { return !run.assessment || run.assessment->simulated(); });
   for (const QuantityKind& kind : Quantities()) {
-    if (kind.of_joint) continue;
+    if (!kind.has_row()) continue;
     std::vector<std::string> row = {
         EscapeMarkup(WithUnit(std::string(kind.group) + ", " + kind.label, kind.unit) + ", " +
                      Name(kind.origin, simulated))};

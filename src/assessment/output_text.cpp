@@ -18,7 +18,7 @@ void AppendQuantities(const Assessment& a, std::string* text) {
   std::string group;
   for (const QuantityResult& q : a.quantities) {
     const QuantityKind& kind = *q.kind;
-    if (kind.of_joint) continue;
+    if (!kind.has_row()) continue;
     if (group != kind.group) AppendLine(text, "%s", kind.group);
     group = kind.group;
     const std::string name = WithUnit(std::string("  ") + kind.label, kind.unit);

@@ -40,6 +40,9 @@ struct QuantityKind {
   Bad bad = Bad::kHigh;
   bool nominal_only = false;  // not computed for the possible postures
   bool of_joint = false;  // a cell in the table of joints (see JointTable), not a row of its own
+  bool only_in_files = false;  // too uncertain for tables and plots; JSON and CSV contain it
+
+  bool has_row() const { return !of_joint && !only_in_files; }
 };
 std::span<const QuantityKind> Quantities();
 

@@ -60,6 +60,16 @@ TEST(MuscleUse, AHeavierLoadNeedsMoreOfTheElbowFlexors) {
   EXPECT_FALSE(Mentions(light.warnings, "cannot produce"));
 }
 
+TEST(MuscleUse, OnlyTheFilesContainTheUncertainLargestStiffness) {
+  const Assessment a = JudgeAt(1.0, 30);
+  const std::string label = "hand's largest stiffness [N/m]";
+  EXPECT_EQ(AssessmentText(a).find(label), std::string::npos);
+  EXPECT_EQ(AssessmentPage(a, "1.0").find(label), std::string::npos);
+  EXPECT_NE(AssessmentText(a).find("hand's smallest stiffness [N/m]"), std::string::npos);
+  for (const std::string& file : {AssessmentJson(a), AssessmentCsv(a)})
+    EXPECT_NE(file.find("muscles.left.stiffest_n_per_m"), std::string::npos);
+}
+
 TEST(MuscleUse, BothArmsOfASymmetricTaskDoTheSame) {
   const Assessment a = JudgeAt(1.0, 30);
   for (const char* value : {"largest", "mean", "rotator_cuff", "forearm", "softest_n_per_m"})
