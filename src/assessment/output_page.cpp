@@ -8,6 +8,7 @@
 #include "assessment/output_picture.h"
 #include "assessment/safety/output.h"
 #include "core/format.h"
+#include "core/person_state.h"
 #include "core/text.h"
 #include "report/page.h"
 
@@ -88,6 +89,10 @@ Plot GroupPlot(const Assessment& a, const std::string& group, const std::string&
   }
   if (intervals)
     plot.caption += "The shaded areas contain 90 % of the possible postures and bodies. ";
+  const bool compression = std::ranges::any_of(a.quantities, [&](const QuantityResult& q) {
+    return group == q.kind->group && q.kind->limit == kCompressionLimit;
+  });
+  if (compression) plot.caption += std::string(kCompressionCaveat) + " ";
   plot.caption += OperatorSentence(a);
   return plot;
 }
@@ -333,7 +338,7 @@ void AddParts(const Assessment& a, Outline* outline) {
       "p5 and p95: percentiles over the judged time, of the nominal posture. The column \"Tail\" "
       "contains the 90 % interval of p95 (of p5 for balance) over 64 possible postures and "
       "bodies.");
-  page.Paragraph(OriginWords(a.simulated()) + ".");
+  page.Paragraph(OriginWords(a.simulated()) + ". " + kCompressionCaveat);
   AddJoints(a, outline);
   outline->Begin("worksheets", "Scores (standard)");
   page.Html(ScoreBars(a));

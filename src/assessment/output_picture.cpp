@@ -5,6 +5,7 @@
 
 #include "assessment/output.h"
 #include "core/format.h"
+#include "core/person_state.h"
 #include "core/text.h"
 #include "report/page.h"
 
@@ -284,19 +285,20 @@ std::string PicturesHtml(const Assessment& a) {
       "<div class=\"bodies\">" +
       PictureSvg(a, a.worst, kSide) + PictureSvg(a, a.worst, kFront) + "<div>" + LoadTable(a) +
       ColorScale() + "</div></div>\n";
-  html += "<p class=\"caption\">" +
-          EscapeMarkup(Formatted(
-              "The picture shows the moment of the highest load, %.1f s after the start (modelled "
-              "from the measured handles and forces). The loads are the compression of the lower "
-              "back as a share of NIOSH's limit (3.4 kN), and the torques of shoulders and elbows "
-              "as shares of the mean strength for the person's sex. Arrows: the force of the hands "
-              "on the handles.%s %s",
-              a.worst.time,
-              a.worst.possible.empty() ? ""
-                                       : " The thin lines show other possible postures and bodies, "
-                                         "because the handles do not determine the posture.",
-              OperatorSentence(a).c_str())) +
-          "</p>\n<div class=\"bodies\">";
+  html +=
+      "<p class=\"caption\">" +
+      EscapeMarkup(Formatted(
+          "The picture shows the moment of the highest load, %.1f s after the start (modelled "
+          "from the measured handles and forces). The loads are the compression of the lower "
+          "back as a share of NIOSH's limit (3.4 kN), and the torques of shoulders and elbows "
+          "as shares of the mean strength for the person's sex. %s Arrows: the force of the hands "
+          "on the handles.%s %s",
+          a.worst.time, kCompressionCaveat,
+          a.worst.possible.empty() ? ""
+                                   : " The thin lines show other possible postures and bodies, "
+                                     "because the handles do not determine the posture.",
+          OperatorSentence(a).c_str())) +
+      "</p>\n<div class=\"bodies\">";
   for (const BodyPicture& picture : a.pictures) html += SmallSvg(a, picture);
   return html + "</div>\n";
 }

@@ -5,6 +5,7 @@
 #include "assessment/output.h"
 #include "assessment/safety/output.h"
 #include "core/format.h"
+#include "core/person_state.h"
 #include "core/text.h"
 #include "core/text_table.h"
 #include "core/units.h"
@@ -257,6 +258,7 @@ std::string AssessmentText(const Assessment& a) {
       "Tail contains the 90 % interval of p95 (of p5 for balance) over 64 possible postures and "
       "bodies.\n\n";
   AppendQuantities(a, &text);
+  AppendLine(&text, "%s", kCompressionCaveat);
   AppendJoints(a, &text);
   AppendWorksheets(a, &text);
   AppendSentences("Limits of your files (standard)", a.limits, &text);

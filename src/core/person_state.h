@@ -90,6 +90,9 @@ inline constexpr std::size_t kBodyParts = kBodyPartNames.size();
 inline constexpr double kCompressionLimit = 3400, kShearLimit = 700;
 inline constexpr const char* kCompressionLimitName = "NIOSH's limit for compression";
 inline constexpr const char* kShearLimitName = "Gallagher & Marras's limit for frequent shear";
+// The absolute compression of the model deviates from measurements by up to a factor of two.
+inline constexpr const char* kCompressionCaveat =
+    "The model is too uncertain for NIOSH's limit. Use the compression only to compare designs.";
 
 // Values for the nominal posture, each with an interval that covers the possible postures.
 enum class PersonGauge : std::uint8_t {
@@ -123,8 +126,10 @@ struct PersonGaugeRow {
   int hand = -1;  // the hand that the gauge belongs to; −1: neither
 };
 inline constexpr std::array kPersonGaugeRows = {
-    PersonGaugeRow{"lower_back_compression", "N", "compression of the disc L5/S1",
-                   kCompressionLimit, false, GaugeSource::kModelled},
+    PersonGaugeRow{
+        "lower_back_compression", "N",
+        "compression of the disc L5/S1; too uncertain for the limit, so only for comparisons",
+        kCompressionLimit, false, GaugeSource::kModelled},
     PersonGaugeRow{"lower_back_shear", "N", "forward shear of L5/S1", kShearLimit, false,
                    GaugeSource::kModelled},
     PersonGaugeRow{"lower_back_moment", "N m", "moment of the extensors of the back about L5/S1", 0,

@@ -297,6 +297,9 @@ TEST(Output, JsonFitsItsSchemaAndTablesAreComplete) {
                           "background: #d57623\" title=\"5 to 6: change soon: 75 %\""})
     EXPECT_NE(page.find(bar), std::string::npos) << bar;
   EXPECT_NE(page.find("one simulated person (simulated sensor)"), std::string::npos);
+  const std::string caveat = "Use the compression only to compare designs.";
+  EXPECT_NE(page.find(caveat), std::string::npos);
+  EXPECT_NE(PopulationText(study).find(caveat), std::string::npos);
   for (const std::string& output : {DesignsCsv(study), PopulationJson(study)}) {
     EXPECT_NE(output.find("simulated sensor"), std::string::npos);
     EXPECT_EQ(output.find("measured"), std::string::npos);

@@ -285,6 +285,19 @@ TEST(Assessment, AComparisonStatesWhatTheDesignsDifferIn) {
   EXPECT_TRUE(DesignDifferences(a, a).empty());
 }
 
+// Where the limit of the compression appears, its caveat does, too: with the picture, the table and
+// the plot of the page, and in the text.
+TEST(Assessment, TheLimitOfTheCompressionHasACaveat) {
+  const Assessment a = Judge(20);
+  EXPECT_NE(AssessmentText(a).find(kCompressionCaveat), std::string::npos);
+  const std::string page = AssessmentPage(a, "1.0");
+  const std::string words = "Use the compression only to compare designs.";
+  std::size_t times = 0;
+  for (std::size_t at = page.find(words); at != std::string::npos; at = page.find(words, at + 1))
+    ++times;
+  EXPECT_EQ(times, 3U);
+}
+
 // A simulated run measures nothing: its sensors are simulated.
 TEST(Assessment, ASimulatedRunHasSimulatedSensors) {
   Assessment a = Judge(20);

@@ -22,7 +22,7 @@ export interface PersonState {
 }
 
 export const kPersonGauges = {
-  lower_back_compression: {unit: 'N', limit: 3400, lowIsBad: false, source: 'modelled', meaning: 'compression of the disc L5/S1'},
+  lower_back_compression: {unit: 'N', limit: 3400, lowIsBad: false, source: 'modelled', meaning: 'compression of the disc L5/S1; too uncertain for the limit, so only for comparisons'},
   lower_back_shear: {unit: 'N', limit: 700, lowIsBad: false, source: 'modelled', meaning: 'forward shear of L5/S1'},
   lower_back_moment: {unit: 'N m', limit: 0, lowIsBad: false, source: 'modelled', meaning: 'moment of the extensors of the back about L5/S1'},
   balance_margin: {unit: 'm', limit: 0, lowIsBad: true, source: 'modelled', meaning: 'distance from the centre of pressure to the edge of the feet; negative: outside'},

@@ -11,6 +11,7 @@
 #include "assessment/design_differences.h"
 #include "assessment/output_picture.h"
 #include "core/format.h"
+#include "core/person_state.h"
 #include "core/text.h"
 #include "evaluation/statistics_samples.h"
 
@@ -90,6 +91,11 @@ PlotAxis DesignAxis(std::vector<std::string> names) {
   return axis;
 }
 
+// Returns a sentence that begins with a space, or "".
+std::string CaveatOf(const StudyQuantity& kind) {
+  return kind.limit == kCompressionLimit ? std::string(" ") + kCompressionCaveat : "";
+}
+
 // Shows every person as a dot, with the median and the range of 90 % of the people.
 PlotPanel PeoplePanel(const PopulationStudy& study, std::size_t quantity) {
   const StudyQuantity& kind = StudyQuantities()[quantity];
@@ -120,6 +126,7 @@ Plot PeoplePlot(const PopulationStudy& study, std::size_t quantity) {
   plot.title = std::string(kind.label) + ": every person";
   plot.caption = std::string("Each dot is one simulated person (") +
                  assessment::Name(kind.origin, true) + "). The same people perform every design.";
+  plot.caption += CaveatOf(kind);
   plot.x = DesignAxis(DesignNames(study));
   plot.panels = {PeoplePanel(study, quantity)};
   return plot;
@@ -180,7 +187,8 @@ Plot HeightPlot(const PopulationStudy& study, std::size_t quantity) {
   Plot plot;
   plot.id = std::string("height-") + std::to_string(quantity);
   plot.title = std::string(kind.label) + " over the height of the handles";
-  plot.caption = "Lines: the median person. The shaded areas contain 90 % of the people.";
+  plot.caption =
+      "Lines: the median person. The shaded areas contain 90 % of the people." + CaveatOf(kind);
   plot.x = {.label = "Height of the handles above the ground", .unit = "m"};
   PlotPanel panel;
   panel.y = {.label = kind.label, .unit = kind.unit.shown};
@@ -293,7 +301,7 @@ std::string LimitWords() {
   for (const StudyQuantity& kind : StudyQuantities())
     if (kind.has_limit())
       words += std::string(words.back() == ':' ? " " : "; ") + kind.label + ": " + kind.limit_name;
-  return words + ".";
+  return words + ". " + kCompressionCaveat;
 }
 
 }  // namespace

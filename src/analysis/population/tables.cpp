@@ -6,6 +6,7 @@
 #include "assessment/design_differences.h"
 #include "core/format.h"
 #include "core/json_schema.h"
+#include "core/person_state.h"
 #include "core/text.h"
 #include "report/plot.h"
 
@@ -251,6 +252,7 @@ std::string PopulationText(const PopulationStudy& study) {
       "Each person's value is the 95th percentile over time (5th percentile for balance) for the "
       "nominal posture. For RULA and REBA, the value is the score that is exceeded for 5 % of the "
       "time.\n";
+  AppendLine(&text, "L5/S1 compression: %s", kCompressionCaveat);
   for (const std::string& line : study.warnings) AppendLine(&text, "Warning: %s", line.c_str());
   if (!study.differences_of_designs.empty()) text += assessment::kDesignsDiffer + std::string("\n");
   for (const std::string& line : study.differences_of_designs)
