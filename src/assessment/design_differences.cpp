@@ -11,10 +11,10 @@ namespace {
 
 // Returns a value of a scenario that fits into a line.
 std::string Shortened(const std::string& value) {
-  constexpr std::size_t kMost = 60;
+  constexpr std::size_t kLongest = 60;
   if (value.empty()) return "nothing";
-  if (value.size() <= kMost) return Printable(value);
-  std::size_t end = kMost;
+  if (value.size() <= kLongest) return Printable(value);
+  std::size_t end = kLongest;
   while (end > 0 && (static_cast<unsigned char>(value[end]) & 0xC0U) == 0x80U) --end;
   return Printable(value.substr(0, end)) + " …";
 }
