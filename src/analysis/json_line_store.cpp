@@ -13,9 +13,9 @@ JsonLineStore::JsonLineStore(const std::filesystem::path& file) : file_(file) {
   if (std::ifstream in(file); in) {
     for (std::string line; std::getline(in, line);) {
       whole = !in.eof();
-      Json json = Json::parse(line, nullptr, false);
-      if (json.is_object() && json.contains("key") && json["key"].is_string())
-        pieces_[json["key"].get<std::string>()] = std::move(json);
+      const Json json = Json::parse(line, nullptr, false);
+      if (json.is_object() && json.contains("key") && json.at("key").is_string())
+        pieces_[json.at("key").get<std::string>()] = json;
     }
   }
   out_.open(file, std::ios::app);
