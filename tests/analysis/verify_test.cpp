@@ -24,6 +24,7 @@
 #include "recording/writer.h"
 #include "scenario/own_parameters.h"
 #include "scenario/scenario_io.h"
+#include "simulation/world.h"
 #include "support/plugins.h"
 #include "support/soak.h"
 

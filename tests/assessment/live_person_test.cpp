@@ -14,7 +14,7 @@ namespace predictor::assessment {
 namespace {
 
 // The hands rise by 0.3 m and return within 2 s, with a force that changes.
-TickRecord Lift(std::uint64_t tick) {
+TickRecord LiftedRecord(std::uint64_t tick) {
   const double t = 1e-3 * static_cast<double>(tick);
   const double up = 0.5 - 0.5 * std::cos(std::numbers::pi * t);
   return RecordOf(tick, 0.85 + 0.3 * up, 15 + 25 * up);
@@ -36,8 +36,8 @@ std::vector<PersonState> Follow(LivePerson* person, double duration) {
   std::vector<PersonState> states;
   const auto ticks = static_cast<std::uint64_t>(std::lround(1e3 * duration));
   for (std::uint64_t tick = 1; tick <= ticks; ++tick)
-    if (person->Add(Lift(tick))) states.push_back(person->state());
-  TickRecord over = Lift(ticks + 1);
+    if (person->Add(LiftedRecord(tick))) states.push_back(person->state());
+  TickRecord over = LiftedRecord(ticks + 1);
   over.ran = 0;
   if (person->Add(over)) states.push_back(person->state());
   return states;
@@ -179,7 +179,7 @@ TEST(LivePerson, DrawsTheBodyThatHoldsTheHandles) {
     const auto& x = state.points[static_cast<std::size_t>(p)];
     return Vector3(x[0], x[1], x[2]);
   };
-  const double height = FromRecord(Lift(state.tick).hands[0].real.pose).p.z();
+  const double height = FromRecord(LiftedRecord(state.tick).hands[0].real.pose).p.z();
   EXPECT_LT((point(BodyPoint::kLeftHand) - Vector3(0.5, -0.15, height)).norm(), 0.13);
   EXPECT_LT((point(BodyPoint::kRightHand) - Vector3(0.5, 0.15, height)).norm(), 0.13);
   EXPECT_NEAR(point(BodyPoint::kLeftAnkle).x(), 0.95, 1e-6);
@@ -216,10 +216,10 @@ TEST(LivePerson, StatesWhyNothingIsJudged) {
 
 TEST(LivePerson, FollowsAReplay) {
   LivePerson live(PersonScenario(), {});
-  for (std::uint64_t tick = 1; tick <= 500; ++tick) live.Add(Lift(tick));
+  for (std::uint64_t tick = 1; tick <= 500; ++tick) live.Add(LiftedRecord(tick));
   EXPECT_NEAR(live.state().since, 0.006, 1e-9);
-  EXPECT_FALSE(live.Add(Lift(500)));  // paused
-  for (std::uint64_t tick = 101; tick <= 200; ++tick) live.Add(Lift(tick));
+  EXPECT_FALSE(live.Add(LiftedRecord(500)));  // paused
+  for (std::uint64_t tick = 101; tick <= 200; ++tick) live.Add(LiftedRecord(tick));
   EXPECT_EQ(live.state().tick, 200u);
   EXPECT_NEAR(live.state().since, 0.106, 1e-9);
   EXPECT_EQ(live.state().status, PersonStatus::kJudged);
