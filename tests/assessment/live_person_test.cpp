@@ -26,7 +26,7 @@ struct Recorded {
   PersonSetup setup;
   NominalChain nominal;
   explicit Recorded(double duration)
-      : run(Collect(scenario, duration, Lift)),
+      : run(Collect(scenario, duration, LiftedRecord)),
         setup(SetupOf(scenario, run.first())),
         nominal(RunNominal(setup, run.samples(), {}, [](double) {})) {}
 };
