@@ -59,6 +59,17 @@ Scenario Studied(const std::string& scenario, const std::string& controller,
                          named(StudiedHazards(), hazard), HazardStudyOptions().duration);
 }
 
+TEST(StudiedScenario, KeepsTheOwnLimitsOfTheCobot) {
+  const auto limits = [](const std::vector<std::string>& set) {
+    return StudiedScenario(kScenarios / "box_9kg.yaml", {"own", set}, StudiedHazards()[0], 6)
+        .cobot.safety;
+  };
+  EXPECT_EQ(limits({}).force, 100);
+  EXPECT_EQ(limits({}).speed, 0.75);
+  EXPECT_EQ(limits({"cobot.safety.force=50"}).force, 50);
+  EXPECT_FALSE(limits({"cobot.safety.force=50"}).speed);
+}
+
 HazardRun StudiedRun(const std::string& scenario, const std::string& controller,
                      const std::string& hazard, std::uint64_t seed) {
   return HazardRuns(Studied(scenario, controller, hazard)).Run(seed);
@@ -66,7 +77,7 @@ HazardRun StudiedRun(const std::string& scenario, const std::string& controller,
 
 // A run depends on its seed only, and not on the runs before it.
 TEST(HazardRuns, RepeatForTheSameSeed) {
-  const Scenario scenario = Studied("single_arm", "cartesian_impedance", "brakes_close");
+  const Scenario scenario = Studied("single_arm", "own", "brakes_close");
   HazardRuns runs(scenario), again(scenario);
   std::vector<std::string> texts;
   for (const std::uint64_t seed : {1, 2, 3}) texts.push_back(TextOf(runs.Run(seed)));
@@ -76,7 +87,7 @@ TEST(HazardRuns, RepeatForTheSameSeed) {
 }
 
 TEST(HazardRuns, DifferInTheTimeOfTheHazardAndInTheForces) {
-  HazardRuns runs(Studied("single_arm", "cartesian_impedance", "brakes_close"));
+  HazardRuns runs(Studied("single_arm", "own", "brakes_close"));
   const HazardRun one = runs.Run(1), two = runs.Run(2);
   EXPECT_NE(one.begin, two.begin);
   EXPECT_NE(one.after, two.after);
@@ -88,7 +99,7 @@ TEST(HazardRuns, DifferInTheTimeOfTheHazardAndInTheForces) {
 
 // A hand reaches this force before the state is saved, so the run of every seed is already over.
 TEST(HazardRuns, EndWithTheCommonBeginningIfThatStops) {
-  Scenario scenario = Studied("single_arm", "cartesian_impedance", "brakes_close");
+  Scenario scenario = Studied("single_arm", "own", "brakes_close");
   scenario.safety.force = 2;
   HazardRuns runs(scenario);
   HazardRun one = runs.Run(1);
@@ -105,7 +116,7 @@ TEST(HazardRuns, StopWithinThreeMillisecondsAfterTheForceExceedsItsThresholdClea
   const struct {
     const char *scenario, *controller, *hazard;
     std::uint64_t seed;
-  } kRuns[] = {{"box_9kg", "cartesian_impedance", "power_loss", 2},
+  } kRuns[] = {{"box_9kg", "own", "power_loss", 2},
                {"box_9kg", "joint_impedance", "object_slips", 1},
                {"box_9kg", "variable_impedance", "takeover", 1},
                {"bar_circle", "admittance", "power_loss", 1},

@@ -355,6 +355,7 @@ TEST(HazardStudyFiles, AnInterruptedStudyIsContinued) {
   const HazardStudy first = MakeHazardStudy(options);
   EXPECT_EQ(first.kept, 0);
   EXPECT_EQ(first.cells.size(), StudiedControllers().size() * StudiedHazards().size());
+  EXPECT_EQ(first.cells.front().controller, "cartesian_impedance");  // the scenario's own
   const fs::path runs = options.folder / "runs.csv";
   const std::string table = ContentOf(options.folder / "hazards.csv"),
                     words = ContentOf(options.folder / "hazards.md"), whole = ContentOf(runs);

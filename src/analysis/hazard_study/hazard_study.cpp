@@ -19,11 +19,13 @@ namespace {
 
 // The hazard begins at a random time in this window, so that an operator cannot anticipate it.
 constexpr double kAfter = 2, kWindow = 2;  // [s]
-// The cobot's own limits in the study are a design choice. They are wide enough for every
-// undisturbed run.
-const std::vector<std::string> kCobotSafety = {"cobot.safety.force=100", "cobot.safety.speed=0.75",
-                                               "cobot.safety.joint_torque=60"};
+// The limits of a cobot for which the scenario states none. They are a design choice, and wide
+// enough for every undisturbed run.
+constexpr double kForce = 100;       // [N]
+constexpr double kSpeed = 0.75;      // [m/s]
+constexpr double kJointTorque = 60;  // [N·m]
 
+constexpr const char* kOwnController = "own";
 constexpr const char* kLoadSharing = "load_sharing";
 constexpr const char* kSlips = "object_slips";
 constexpr double kGripShare = 0.5;  // share of the object's weight that the grip can hold; a design
@@ -36,6 +38,25 @@ std::vector<std::string> Controller(const std::string& parameters) {
 StudyChoice Hazard(const std::string& name, const std::string& parameters = "") {
   const std::string trigger = Formatted("trigger: {after: %g, window: %g}", kAfter, kWindow);
   return {name, {"events=[{event: " + name + ", " + trigger + parameters + "}]"}};
+}
+
+void SetSafety(CobotSafetySpec* safety) {
+  const CobotSafetySpec& own = *safety;
+  if (own.force || own.speed || own.momentum || own.joint_torque || own.joint_force) return;
+  safety->force = kForce;
+  safety->speed = kSpeed;
+  safety->joint_torque = kJointTorque;
+}
+
+// Returns the name of the controller that a study's column shows. The scenario's own controller may
+// be of a type that the study also contains with other parameters.
+std::string ColumnOf(const StudyChoice& controller, const Scenario& scenario) {
+  if (!controller.set.empty()) return controller.name;
+  const std::string& type = scenario.cobot.controller.type;
+  const auto others = StudiedControllers();
+  const bool twice = std::ranges::any_of(
+      others, [&](const StudyChoice& other) { return !other.set.empty() && other.name == type; });
+  return twice ? type + " of the scenario" : type;
 }
 
 // Gives the controller the mass and the centre of mass of the load.
@@ -99,7 +120,7 @@ HazardCell MakeCell(const std::filesystem::path& file, const StudyChoice& contro
                     const StudyChoice& hazard, SharedStudy* study) {
   HazardCell cell;
   cell.scenario = file.stem().string();
-  cell.controller = controller.name;
+  cell.controller = ColumnOf(controller, LoadScenario(file));
   cell.hazard = hazard.name;
   Scenario scenario;
   std::unique_ptr<HazardRuns> runs;
@@ -121,7 +142,7 @@ HazardCell MakeCell(const std::filesystem::path& file, const StudyChoice& contro
 
 std::vector<StudyChoice> StudiedControllers() {
   return {
-      {"cartesian_impedance", {}},
+      {kOwnController, {}},
       {"joint_impedance", Controller("type: joint_impedance, joint_stiffness: [600]")},
       {"admittance", Controller("type: admittance, damping_translation: 150, damping_rotation: 6")},
       {"variable_impedance",
@@ -144,9 +165,10 @@ std::vector<StudyChoice> StudiedHazards() {
 Scenario StudiedScenario(const std::filesystem::path& file, const StudyChoice& controller,
                          const StudyChoice& hazard, double duration) {
   std::vector<std::string> set = {Formatted("duration=%.9g", kAfter + duration)};
-  for (const auto* more : {&controller.set, &hazard.set, &kCobotSafety})
+  for (const auto* more : {&controller.set, &hazard.set})
     set.insert(set.end(), more->begin(), more->end());
   Scenario scenario = LoadScenario(file, set);
+  SetSafety(&scenario.cobot.safety);
   if (controller.name == kLoadSharing) SetLoad(&scenario);
   if (hazard.name == kSlips) SetGrip(&scenario);
   return scenario;

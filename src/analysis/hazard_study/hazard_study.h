@@ -17,7 +17,8 @@ struct StudyChoice {
   std::string name;
   std::vector<std::string> set;
 };
-// These functions return the controllers and the hazards of the study.
+// These functions return the controllers and the hazards of the study. The first controller is the
+// scenario's own, and has no overrides.
 std::vector<StudyChoice> StudiedControllers();
 std::vector<StudyChoice> StudiedHazards();
 

@@ -85,11 +85,12 @@ std::string Row(const std::vector<std::string>& cells) {
 }  // namespace
 
 std::string HazardStudyTables(const HazardStudy& study) {
-  const std::vector<std::string> controllers = NamesIn(study, &HazardCell::controller);
   std::string text;
   for (const std::string& scenario : NamesIn(study, &HazardCell::scenario)) {
     std::vector<std::string> head = {scenario};
-    head.insert(head.end(), controllers.begin(), controllers.end());
+    for (const HazardCell& cell : study.cells)
+      if (cell.scenario == scenario && std::ranges::find(head, cell.controller) == head.end())
+        head.push_back(cell.controller);
     text += Row(head) + Row(std::vector<std::string>(head.size(), "---"));
     for (const std::string& hazard : NamesIn(study, &HazardCell::hazard)) {
       std::vector<std::string> row = {hazard};
