@@ -37,8 +37,9 @@ endfunction()
 
 # predictor_module(NAME [LIGHT] PUBLIC ... PRIVATE ...) builds src/NAME/**.cpp as the library
 # predictor_NAME. Dependencies on other modules are named without the prefix. LIGHT means that the
-# module's own code takes no notable part of the tick's or of an analysis's time: it parses, writes, or calls other modules
-# that compute. It is optimized less, which saves a third of its compile time.
+# module's own code takes no notable part of the time of the tick or of an analysis: it parses,
+# writes, or calls other modules that compute. It is optimized less, which saves a third of its
+# compile time.
 #
 # These libraries consist of headers. A program that links an installed module does not need them.
 set(PREDICTOR_HEADER_LIBRARIES pinocchio::pinocchio nlohmann_json::nlohmann_json boost_headers message_table)

@@ -59,13 +59,10 @@ void AddEvaluation(CLI::App* app, ServeOptions* o) {
 }
 
 void AddStreams(CLI::App* app, lab_streams::StreamOptions* o) {
-  AddOption(
+  AddRepeatable(
       app, "Person", "--person-stream", &o->streams, "NAME|MAP",
       "Measure the person with this stream of the Lab Streaming Layer: its name, or a mapping "
-      "(.yaml) that names it (repeatable)")
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
+      "(.yaml) that names it (repeatable)");
   AddOption(app, "Person", "--lsl-library", &o->library, "FILE",
             "The library of the Lab Streaming Layer, liblsl.so [default: that of the system]");
 }

@@ -85,11 +85,7 @@ EventSequence::EventSequence(const Scenario& scenario) {
   Reset();
 }
 
-Vector6 EventSequence::set_point_shift(std::size_t i) const {
-  Disturbance d;
-  events_[i].kind->disturb(*events_[i].parameters, 0, &d);
-  return d.set_point;
-}
+Vector6 EventSequence::set_point_shift(std::size_t i) const { return events_[i].first.set_point; }
 
 double EventSequence::longest_delay() const {
   double sum = 0;

@@ -20,7 +20,6 @@ constexpr double kMaxVelocity = 100;      // of a joint [rad/s, m/s]
 constexpr double kMaxAcceleration = 1e6;  // of a joint [rad/s², m/s²]
 // A rolling small ball may turn faster than any joint.
 constexpr double kMaxMovableVelocity = 1000;  // [rad/s, m/s]
-constexpr double kFloorHeight = 1e-3;  // contacts below it are with the floor, not a table [m]
 
 // Returns the largest absolute value and its index. The first NaN counts as the largest.
 double Largest(const Eigen::Ref<const Eigen::VectorXd>& values, Eigen::Index* index) {
@@ -308,7 +307,7 @@ struct World::Impl {
       const Contact contact = copy->contact(i);
       const bool of_object = contact.link.empty() && contact.body < 0;
       if (!of_object) continue;
-      const bool is_floor = contact.fixture < 0 && contact.p_W.z() < kFloorHeight;
+      const bool is_floor = contact.floor;
       (is_floor ? support.floor : support.other) += contact.force_W.z();
       if (contact.fixture >= 0)
         support.fixtures |= std::uint64_t{1} << contact.fixture;

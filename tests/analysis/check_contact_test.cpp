@@ -252,8 +252,8 @@ TEST(CheckContact, NamesTheContactsOfLinksThatItDoesNotPredict) {
   EXPECT_TRUE(report.contacts.empty());
   EXPECT_EQ(report.link_contacts,
             (std::vector<std::string>{"environment.fixtures.0", "cobot.touches"}));
-  EXPECT_NE(CheckText(report).find("not predicted: contact because of environment.fixtures.0, "
-                                   "cobot.touches."),
+  EXPECT_NE(CheckText(report).find("contact that environment.fixtures.0, cobot.touches allows is "
+                                   "not predicted."),
             std::string::npos);
 }
 

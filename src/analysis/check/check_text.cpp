@@ -217,10 +217,11 @@ void AddContacts(const CheckReport& report, std::string* text) {
              "\nContact: what the hands feel while the object touches something, at one point");
   for (const ContactReport& contact : report.contacts) AddContact(contact, text);
   if (!report.link_contacts.empty())
-    AppendLine(text,
-               "  cobot's links    not predicted: contact because of %s. The prediction knows only "
-               "forces on the object. Simulate the scenario to see such a contact.",
-               Join(report.link_contacts).c_str());
+    AppendLine(
+        text,
+        "  cobot's links    contact that %s allows is not predicted. The prediction knows only "
+        "forces on the object. Simulate the scenario to see such a contact.",
+        Join(report.link_contacts).c_str());
 }
 
 void AddStop(const CheckReport& report, std::string* text) {

@@ -55,10 +55,10 @@ class ContactPrediction {
 
   const LinearModel& world() const { return world_; }  // without contacts
 
+  // The object touches all surfaces of `at` at the start, or none.
   ContactReport At(const ContactWall& at) const {
     ContactReport report{at};
-    report.at_start = std::ranges::any_of(
-        at.surfaces, [this](const Surface& surface) { return IsTouchedAtStart(surface); });
+    report.at_start = IsTouchedAtStart(at.surfaces[0]);
     report.what = PhraseOf(at.surfaces, &s_);
     report.stable = report.at_start ? IsStable(start_) : IsStableAt(report);
     report.limit = StiffestStableWall(world_, s_, s_.operator_.hand, lead_, report.Varying());
@@ -71,7 +71,6 @@ class ContactPrediction {
     return report;
   }
 
- private:
   bool IsTouchedAtStart(const Surface& surface) const {
     switch (surface.kind) {
       case Surface::Kind::kFixture:
@@ -85,6 +84,8 @@ class ContactPrediction {
     }
     return false;
   }
+
+ private:
   bool IsStable(const LinearModel& world) const {
     return HapticLoop(world, s_, 1 / s_.rate).GrowthRate(s_.operator_.hand, lead_, 1) <=
            HapticLoop::kGrowing;
@@ -215,8 +216,17 @@ std::vector<ContactReport> CheckContacts(const Scenario& s, const World& world, 
                                          bool floor) {
   std::vector<ContactReport> reports;
   const ContactPrediction prediction(s, world, lead);
-  for (const ContactWall& at : WallsOf(s, prediction.world(), world.state().object.X_W, floor))
-    reports.push_back(prediction.At(at));
+  for (const ContactWall& at : WallsOf(s, prediction.world(), world.state().object.X_W, floor)) {
+    // Equal surfaces share a report only if the object touches both of them at the start, or
+    // neither.
+    for (const bool touched : {true, false}) {
+      ContactWall part = at;
+      std::erase_if(part.surfaces, [&](const Surface& surface) {
+        return prediction.IsTouchedAtStart(surface) != touched;
+      });
+      if (!part.surfaces.empty()) reports.push_back(prediction.At(part));
+    }
+  }
   return reports;
 }
 

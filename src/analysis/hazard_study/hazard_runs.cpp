@@ -4,6 +4,7 @@
 #include <array>
 
 #include "analysis/hazard_study/run_measures.h"
+#include "core/error.h"
 #include "core/norm.h"
 #include "emulator/run_loop.h"
 #include "evaluation/events.h"
@@ -82,6 +83,7 @@ HazardRuns::HazardRuns(const Scenario& scenario) : emulator_(scenario), state_(k
   Simulate(&emulator_, std::min(earliest, scenario.duration) - emulator_.dt(),
            [&](const TickRecord& record) { observer.Add(record); });
   state_.resize(emulator_.SaveState(state_));
+  if (state_.empty()) throw InputError("The state of this scenario is too large to be saved.");
   beginning_ = std::make_unique<const HazardObserver>(std::move(observer));
 }
 

@@ -47,6 +47,7 @@ class SceneMotion {
   void Add(const TickRecord& record);
 
   bool empty() const { return !any_; }
+  bool knows_the_outline() const { return !outline_.empty(); }
   const Sample& fastest() const { return fastest_; }
   const Sample& highest() const { return highest_; }  // the object's highest place
   // Returns, for each release by a hand of a simulated operator, the time of the greatest speed

@@ -36,7 +36,7 @@ std::vector<RigLimit> RigLimits(const Scenario& scenario, const SafetyCollector:
   return limits;
 }
 
-void AddGaps(const Scenario& scenario, const SafetyOptions& options, const CobotMargins& margins,
+void AddGaps(const Scenario& scenario, const SafetyOptions& options, const SafetyCollector& run,
              SafetyAssessment* safety) {
   const auto add = [&](const char* what, const char* why) {
     safety->not_evaluable.push_back({what, why});
@@ -57,7 +57,11 @@ void AddGaps(const Scenario& scenario, const SafetyOptions& options, const Cobot
   }
   add("distance between the person's body and the links of the cobot",
       "the links have no shape in this simulation");
-  if (!margins.known())
+  if (!run.scene().knows_the_outline())
+    add("speed of the points of the object beside its origin and its handles",
+        "the recording contains no simple shapes of the object (meshes are not used here), so its "
+        "fastest point may be faster than stated");
+  if (!run.margins().known())
     add("distance of the cobot from its joint limits and from singular postures",
         "the recording has lost the model of the cobot");
   for (const RigLimit& limit : safety->rig)
@@ -118,7 +122,7 @@ SafetyAssessment JudgeSafety(const Scenario& scenario, const PersonSetup& setup,
     safety.contact = ContactOf(run.scene(), *options.masses, *options.limits, scenario);
   safety.rig = RigLimits(scenario, run.largest());
   safety.margins = run.margins().results();
-  AddGaps(scenario, options, run.margins(), &safety);
+  AddGaps(scenario, options, run, &safety);
   return safety;
 }
 
