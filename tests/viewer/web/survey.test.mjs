@@ -131,7 +131,7 @@ test('the same person answers after the other run; the two are compared', async 
 
   const {status, stdout} = report('report', folder, '-o', join(folder, 'study.html'));
   assert.equal(status, 0);
-  assert.match(stdout, /After the emulated system: 1 person, age 23\.00/);
+  assert.match(stdout, /After the emulated system: 1 person, age 23 years/);
   assert.match(stdout, /Emulated minus real, 1 person who answered for both/);
   const shown = await open(browser, `file://${join(folder, 'study.html')}`, kViewport);
   await shown.locator('#answers').scrollIntoViewIfNeeded();
