@@ -276,7 +276,7 @@ std::string BeyondText(const StudyQuantity& kind) {
 
 std::string SummaryTable(const PopulationStudy& study) {
   std::vector<std::vector<std::string>> rows = {
-      {"Quantity", "Design", "Median", "90 % of the people", "Limit", "People beyond", "Origin"}};
+      {"Quantity", "Design", "Median", "90 % of the people", "Limit", "People beyond"}};
   for (std::size_t q = 0; q < StudyQuantities().size(); ++q) {
     const StudyQuantity& kind = StudyQuantities()[q];
     for (std::size_t i = 0; i < study.designs.size(); ++i) {
@@ -284,12 +284,12 @@ std::string SummaryTable(const PopulationStudy& study) {
       const auto value = [&](const CensoredValue& x) {
         return s.people > 0 ? Shown(kind, x) : std::string("–");
       };
+      const std::string name = EscapeMarkup(WithUnit(kind.label, kind.unit)) + "<br><small>" +
+                               assessment::Name(kind.origin, true) + "</small>";
       rows.push_back(
-          {i == 0 ? EscapeMarkup(WithUnit(kind.label, kind.unit)) : "",
-           EscapeMarkup(study.designs[i].name), value(s.median),
+          {i == 0 ? name : "", EscapeMarkup(study.designs[i].name), value(s.median),
            s.people > 0 ? value(s.p5) + " to " + value(s.p95) : "–", EscapeMarkup(BeyondText(kind)),
-           kind.has_limit() && s.people > 0 ? Formatted("%.0f %%", 100 * s.beyond.value()) : "–",
-           assessment::Name(kind.origin, true)});
+           kind.has_limit() && s.people > 0 ? Formatted("%.0f %%", 100 * s.beyond.value()) : "–"});
     }
   }
   return HtmlTable(rows);
