@@ -293,7 +293,7 @@ TEST(Output, JsonFitsItsSchemaAndTablesAreComplete) {
   EXPECT_NE(page.find("RULA"), std::string::npos);
   // The colours of the action levels run from green to dark red: scores 3 to 4 have the second of
   // four colours, and scores 5 to 6 the third.
-  for (const char* bar : {"background: #d1b750\" title=\"3 to 4: investigate: 25 %\"",
+  for (const char* bar : {"background: #d1b751\" title=\"3 to 4: investigate: 25 %\"",
                           "background: #d57623\" title=\"5 to 6: change soon: 75 %\""})
     EXPECT_NE(page.find(bar), std::string::npos) << bar;
   EXPECT_NE(page.find("one simulated person (simulated sensor)"), std::string::npos);
