@@ -95,8 +95,8 @@ void AddWork(CLI::App* evaluate, EvaluateOptions* o) {
             "DUET and the hand activity level; no sensor measures it")
       ->check(CLI::Range(0.0, 10.0));
   AddOption(evaluate, "Work", "--fatigue-trial", &o->fatigue_trial, "SHARE,SECONDS",
-            "In a trial, the person held this share of the strength until exhaustion after this "
-            "time, for Peternel's model of fatigue, for example 0.5,60")
+            "In a trial, the person held this share of the strength (0.1 to 1) until exhaustion "
+            "after this time, for Peternel's model of fatigue, for example 0.5,60")
       ->delimiter(',')
       ->expected(2);
   AddRepeatable(

@@ -128,14 +128,15 @@ std::string CobotText(const InitOptions& o, const Draft& draft) {
       "  end_effector: %s  # link that holds the object\n"
       "  posture: %s  # at the start [rad]\n"
       "  joint_friction: {viscous: 1.0}\n"
+      "  payload: {mass: %g, center_of_mass: %s}  # that it compensates [kg], [m]\n"
       "  controller:  # compliant sideways, stiff vertically, so that people can guide the object\n"
       "    type: cartesian_impedance\n"
-      "    stiffness: {translation: [5, 5, %g], rotation: [100, 100, 100]}  # [N/m], [N·m/rad]\n"
+      "    stiffness: {translation: [5, 5, 500], rotation: [100, 100, 100]}  # [N/m], [N·m/rad]\n"
       "    damping_ratio: %g\n"
       "\n",
       o.name.c_str(), file.c_str(), file.c_str(), nlohmann::json(name).dump().c_str(),
       cobot.model.c_str(), removed.c_str(), base.c_str(), cobot.end_effector.c_str(),
-      List(cobot.posture).c_str(), kInitStiffness, draft.damping_ratio);
+      List(cobot.posture).c_str(), draft.mass, List(cobot.attachment).c_str(), draft.damping_ratio);
 }
 
 std::string ObjectText(const InitOptions& o, const Draft& draft) {
@@ -179,16 +180,15 @@ std::string OperatorText(const InitOptions& o, const Draft& draft) {
   const Object& object = ObjectNamed(o.object);
   Vector3 ground = draft.cobot.ObjectAt(object.WithMass(draft.mass));
   ground += Vector3(kHandsAhead, 0, object.handle_z - kHandsHeight);
-  ground.z() -= draft.mass * kStandardGravity / kInitStiffness;  // the cobot sags
   return Formatted(
       "# A simulated operator. To guide the object yourself, replace this section by `type: "
       "browser`\n"
       "# and take the operator's hands in the viewer.\n"
       "operator:\n"
       "  type: virtual\n"
-      "  # Who the operator is and where the operator stands, for `predictor evaluate`:\n"
-      "  # body: {height: 1.75, mass: 75, sex: female}\n"
-      "  # stance: {ground: [%.2f, %.2f, %.2f], facing: 180 deg}\n"
+      "  # Examples for `predictor evaluate`: who the operator is, and where the operator stands.\n"
+      "  body: {height: 1.75, mass: 75, sex: female}  # [m], [kg]\n"
+      "  stance: {ground: [%.2f, %.2f, %.2f], facing: 180 deg}  # midway between the feet [m]\n"
       "  script:\n"
       "    - {action: grip, start: 0, duration: 0.5}\n"
       "    - {action: move, start: 1, duration: 3, by: [0, 0, 0.05]}\n"

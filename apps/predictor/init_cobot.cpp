@@ -20,29 +20,16 @@ constexpr std::size_t kMaxCobots = 5;
 constexpr double kBaseHeights[] = {0, 0.3, 0.6, 0.9};      // to try [m]
 constexpr double kAttachments[] = {0.05, 0.1, 0.15, 0.2};  // distances from E to try [m]
 constexpr double kClearance = 0.02;                        // of the object from all links [m]
-constexpr double kFloorClearance = 0.1;                    // of the object at rest [m]
-
-double SagOf(const InitObject& object) {
-  return object.primitive.mass * kStandardGravity / kInitStiffness;
-}
-
-// Returns whether the joints' limits let the object sag to its equilibrium.
-bool MaySag(const RobotModel& model, const FrameId& tip, const InitObject& object,
-            const InitPosture& posture) {
-  Pose lowered = posture.X_WE;
-  lowered.p.z() -= SagOf(object);
-  JointVector q = posture.q;
-  return SolveInverseKinematics(model, tip, lowered, q, 0, &q);
-}
+constexpr double kFloorClearance = 0.1;                    // of the object [m]
 
 // Attaches the object as close to the end-effector as the links permit. Returns whether the
-// attached object is clear of the links and, at rest, of the floor.
+// attached object is clear of the links and of the floor.
 bool Attach(const LinkGaps& gaps, const InitPosture& posture, const Vector3& outward,
             const InitObject& object, InitCobot* cobot) {
   return std::ranges::any_of(kAttachments, [&](double distance) {
     cobot->attachment = distance * outward;
     const Vector3 p_WO = cobot->ObjectAt(object);
-    if (p_WO.z() - object.half_height - SagOf(object) < kFloorClearance / 2) return false;
+    if (p_WO.z() - object.half_height < kFloorClearance / 2) return false;
     const ObjectGaps gap = gaps.At(posture.q, {p_WO, Quaternion::Identity()});
     return std::min(gap.links.distance, gap.hand.distance) > kClearance;
   });
@@ -62,21 +49,21 @@ std::vector<InitCobot> InPostures(const InitCobot& base, const fs::path& folder,
       RobotModel::Load({base.model, folder, base.remove_links, scenario.cobot.base.ToPose()});
   const FrameId tip = model->Frame(base.end_effector);
   const Vector3 outward = LastLinkDirection(*model, tip);
-  const double lowest = kFloorClearance + SagOf(object) + 2 * object.half_height + kAttachments[0];
+  const double lowest = kFloorClearance + 2 * object.half_height + kAttachments[0];
   const std::vector<InitPosture> postures =
       FindPostures(*model, tip, {object.primitive.mass, outward, tilt, lowest});
   if (postures.empty()) return {};
   const LinkGaps gaps(scenario);
-  std::vector<InitCobot> able, others;  // `others` may meet a joint limit when they sag
+  std::vector<InitCobot> cobots;
   for (const InitPosture& p : postures) {
     InitCobot cobot = base;
     cobot.posture = {p.q.data(), p.q.data() + p.q.size()};
     cobot.X_WE = p.X_WE;
     cobot.tilt = tilt;
-    std::vector<InitCobot>& list = MaySag(*model, tip, object, p) ? able : others;
-    if (list.size() < kMaxCobots && Attach(gaps, p, outward, object, &cobot)) list.push_back(cobot);
+    if (Attach(gaps, p, outward, object, &cobot)) cobots.push_back(cobot);
+    if (cobots.size() == kMaxCobots) break;
   }
-  return able.empty() ? others : able;
+  return cobots;
 }
 
 }  // namespace

@@ -13,7 +13,6 @@ namespace predictor {
 
 inline constexpr const char* kPandaUrdf =
     "package://example-robot-data/robots/panda_description/urdf/panda.urdf";
-inline constexpr double kInitStiffness = 500;  // vertical stiffness of the controller [N/m]
 
 // The object, which the cobot holds from above at the centre of the object's upper face.
 struct InitObject {
@@ -27,12 +26,12 @@ struct InitCobot {
   std::vector<std::string> remove_links;
   double removed_mass = 0;               // mass of these links [kg]
   std::vector<double> posture;           // [rad] or [m]
-  Pose X_WE = {};                        // before the cobot sags
+  Pose X_WE = {};                        // in that posture
   double base_height = 0;                // of the cobot above the floor [m]
   Vector3 attachment = Vector3::Zero();  // where the object is attached, in E [m]
   double tilt = 0;                       // of the last link from straight down [rad]
 
-  // Returns the position in W that the object's centre has before the cobot sags [m].
+  // Returns the position of the object's centre in W [m].
   Vector3 ObjectAt(const InitObject& object) const;
 };
 

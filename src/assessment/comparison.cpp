@@ -24,12 +24,14 @@ Difference DifferenceOf(const QuantityResult& a, const QuantityResult& b) {
   if (a.person_tail.empty() || a.person_tail.size() != b.person_tail.size()) return result;
   std::vector<double> differences;
   const double sign = a.kind->bad == Bad::kHigh ? 1 : -1;
+  // A difference below half of the last printed digit is a tie, which counts as one half.
+  const double tie = 0.5 * std::pow(10, -a.kind->unit.decimals) / a.kind->unit.factor;
   double better = 0;
   for (std::size_t i = 0; i < a.person_tail.size(); ++i) {
     const double difference = a.person_tail[i] - b.person_tail[i];
     if (!std::isfinite(difference)) continue;
     differences.push_back(difference);
-    better += sign * difference < 0 ? 1 : 0;
+    better += std::fabs(difference) < tie ? 0.5 : sign * difference < 0 ? 1 : 0;
   }
   if (2 * differences.size() < a.person_tail.size()) return result;
   result.share_better = better / static_cast<double>(differences.size());

@@ -12,7 +12,7 @@ namespace {
 // Returns a value of a scenario that fits into a line.
 std::string Shortened(const std::string& value) {
   constexpr std::size_t kLongest = 60;
-  if (value.empty()) return "nothing";
+  if (value.empty() || value == "[]") return "not set";
   if (value.size() <= kLongest) return Printable(value);
   std::size_t end = kLongest;
   while (end > 0 && (static_cast<unsigned char>(value[end]) & 0xC0U) == 0x80U) --end;
@@ -38,8 +38,11 @@ std::vector<std::string> DesignDifferences(const ComparedDesign& a, const Compar
                                    Formatted("%.3f m", a.handle_height),
                                    Formatted("%.3f m", b.handle_height), a, b));
   if (a.scenario && b.scenario)
-    for (const KeyDifference& d : DifferentKeys(*a.scenario, *b.scenario))
-      lines.push_back(DifferenceLine(Printable(d.key), Shortened(d.a), Shortened(d.b), a, b));
+    for (const KeyDifference& d : DifferentKeys(*a.scenario, *b.scenario)) {
+      const std::string of_a = Shortened(d.a), of_b = Shortened(d.b);
+      lines.push_back(of_a == of_b ? Printable(d.key) + " differs"
+                                   : DifferenceLine(Printable(d.key), of_a, of_b, a, b));
+    }
   return lines;
 }
 

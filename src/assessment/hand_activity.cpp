@@ -100,10 +100,11 @@ const QuantityKind& ActivityRatioKind(int hand) {
 
 std::string Sentence(const HandActivity& a) {
   std::string text = Formatted(
-      "%s hand: %zu exertions above %.0f N (measured; %.2f per second, %.0f %% of the time, force "
-      "%.1f N), so the hand activity level is %.1f of 10%s.",
-      HandName(a.hand), a.exertions, kExertionBegins, a.frequency, 100 * a.duty, a.peak_force,
-      a.level, a.studied ? "" : ", extrapolated beyond the data of the equation");
+      "%s hand: %zu exertion%s above %.0f N (%.2f per second, %.0f %% of the time, 90th percentile "
+      "of the force %.1f N), so the hand activity level is %.1f of 10%s.",
+      HandName(a.hand), a.exertions, a.exertions == 1 ? "" : "s", kExertionBegins, a.frequency,
+      100 * a.duty, a.peak_force, a.level,
+      a.studied ? "" : ", extrapolated beyond the data of the equation");
   if (!std::isfinite(a.normalized_force))
     return text + " The ratio is unknown, because no posture is known during the exertions.";
   if (a.stated)

@@ -69,8 +69,8 @@ std::string Sentence(const FatigueResult& fatigue);
 // Names of the models of fatigue beside 3CC-r.
 inline constexpr const char* kMaModel = "Ma's model";
 inline constexpr const char* kTrialModel = "Peternel's model with the stated trial";
-inline constexpr const char* kEnduranceModel = "Measured endurance at the mean load";
-// Returns a time such as "12 min", or "not within 8 h".
+inline constexpr const char* kEnduranceModel = "Endurance at the mean load, from a measured curve";
+// Returns a time such as "12 min", or "more than 8 h".
 std::string MinutesText(double seconds);
 // Returns the probable score with its 90 % range over the possible postures, what the method
 // advises, and the scores of the nominal posture. The nominal posture alone gives no advice,

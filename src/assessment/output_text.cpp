@@ -203,7 +203,7 @@ std::string Sentence(const DamageResult& damage) {
 }
 
 std::string MinutesText(double seconds) {
-  return seconds < 8 * 3600 ? Formatted("%.0f min", seconds / 60) : "not within 8 h";
+  return seconds < 8 * 3600 ? Formatted("%.0f min", seconds / 60) : "more than 8 h";
 }
 
 std::string Sentence(const WorksheetResult& w) {
@@ -234,8 +234,8 @@ std::string Sentence(const FatigueResult& fatigue) {
   else
     text += " The run can be repeated without a break for 8 h.";
   const auto add = [&](const char* model, const FatigueCourse& other) {
-    Append(&text, " %s: %.1f %% left, too demanding: %s.", model, 100 * other.capacity,
-           MinutesText(other.time_to_limit).c_str());
+    Append(&text, " %s: %.1f %% of strength left, too demanding after %s.", model,
+           100 * other.capacity, MinutesText(other.time_to_limit).c_str());
   };
   add(kMaModel, fatigue.ma);
   if (fatigue.trial) add(kTrialModel, *fatigue.trial);

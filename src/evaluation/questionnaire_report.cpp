@@ -141,9 +141,12 @@ std::string ShiftTable(const char* counted, const ShiftSummaries& summaries) {
     if (s.count > 0)
       text += RightAligned(std::to_string(s.test.zeros), 7) +
               RightAligned(Figure("%+.2f", s.shift.estimate), 8) +
-              RightAligned(Figure("%+.1f", s.shift.lower) + " to " + Figure("%+.1f", s.shift.upper),
+              RightAligned(HasInterval(s.shift) ? Figure("%+.1f", s.shift.lower) + " to " +
+                                                      Figure("%+.1f", s.shift.upper)
+                                                : "–",
                            13) +
-              RightAligned(Figure("%.1f %%", 100 * s.shift.confidence), 12) +
+              RightAligned(HasInterval(s.shift) ? Figure("%.1f %%", 100 * s.shift.confidence) : "–",
+                           12) +
               RightAligned(ProbabilityText(s.test.p), 9) +
               RightAligned(ProbabilityText(s.adjusted), 9);
     text += '\n';

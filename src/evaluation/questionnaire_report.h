@@ -61,6 +61,8 @@ SurveyReport SummariseSurvey(const std::vector<StoredAnswer>& answers);
 // Returns "0.0312" or "<0.0001". A probability is never shown as zero.
 std::string ProbabilityText(double p);
 
+// A single value has no interval: the confidence of its range is 0.
+inline bool HasInterval(const ShiftEstimate& shift) { return shift.confidence > 0; }
 // Returns a sentence if every statement has so few values that no test can show a difference,
 // otherwise an empty text. The smallest two-sided p of n values is 2^(1 − n).
 std::string TooFewText(const ShiftSummaries& summaries);

@@ -38,8 +38,10 @@ std::string ShiftTable(const char* counted, const char* zero, const ShiftSummari
     }
     rows.push_back({Statements()[i].name, std::to_string(s.count), std::to_string(s.test.zeros),
                     Figure("%.2f", s.shift.estimate),
-                    Figure("%.1f", s.shift.lower) + " to " + Figure("%.1f", s.shift.upper),
-                    Figure("%.1f %%", 100 * s.shift.confidence),
+                    HasInterval(s.shift)
+                        ? Figure("%.1f", s.shift.lower) + " to " + Figure("%.1f", s.shift.upper)
+                        : "–",
+                    HasInterval(s.shift) ? Figure("%.1f %%", 100 * s.shift.confidence) : "–",
                     EscapeMarkup(ProbabilityText(s.test.p)),
                     EscapeMarkup(ProbabilityText(s.adjusted))});
   }

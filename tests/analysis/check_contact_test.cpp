@@ -61,7 +61,7 @@ TEST(CheckContact, TheHandsFeelTheFixtureAndTheCobotsSpring) {
   EXPECT_NEAR(contact.at_rest.rendered.real(), 20000 + 500, 0.02 * 20500);
   // The delay of the handle's motion increases the imaginary part of the rendered stiffness.
   EXPECT_GT(contact.moving.rendered.imag(), contact.moving.requested.imag());
-  EXPECT_NE(CheckText(report).find("felt at rest     stiffness 20.5 kN/m (requested 20.5)"),
+  EXPECT_NE(CheckText(report).find("felt at rest     stiffness 20.5 kN/m (requested 20.5 kN/m)"),
             std::string::npos);
 }
 

@@ -52,7 +52,7 @@ TEST_F(Evaluate, WritesTextPageJsonAndCsv) {
 }
 
 TEST_F(Evaluate, UsesTheStatedWork) {
-  const std::string recording = Record("box_9kg");
+  const std::string recording = Record("box_9kg", {}, "8");
   Child child({"evaluate", recording, "--no-intervals", "--duration", "8h", "--coupling", "poor",
                "--grip-effort", "4", "--fatigue-trial", "0.5,60", "--limits",
                fs::path(PREDICTOR_SOURCE_DIR) / "assets/hand_activity_limits.csv", "--json", "-"});
@@ -63,7 +63,11 @@ TEST_F(Evaluate, UsesTheStatedWork) {
   EXPECT_EQ(hands, 2u);
   EXPECT_EQ(json["limits"].size(), 4u);
   EXPECT_EQ(json["hand_activity"][0]["normalized_peak_force"], 4);
-  EXPECT_LT(json["fatigue"][0]["trial_capacity_at_end"].get<double>(), 1.0001);
+  double weakest = 1;
+  for (const auto& fatigue : json["fatigue"])
+    weakest = std::min(weakest, fatigue["trial_capacity_at_end"].get<double>());
+  EXPECT_LT(weakest, 0.99);
+  EXPECT_GT(weakest, 0.5);
   const std::string assumptions = json["assumptions"].dump();
   EXPECT_NE(assumptions.find("eight hours"), std::string::npos) << assumptions;
   EXPECT_NE(assumptions.find("poor handles"), std::string::npos) << assumptions;

@@ -157,37 +157,55 @@ void AddStability(const StabilityReport& r, std::string* text) {
   }
 }
 
+// `stiffness` is in N/m.
+std::string StiffnessText(double stiffness) {
+  return std::fabs(stiffness) < 999.5e3 ? Formatted("%.3g kN/m", 1e-3 * stiffness)
+                                        : Formatted("%.3g MN/m", 1e-6 * stiffness);
+}
+
+// `damping` is in N·s/m.
+std::string DampingText(double damping) {
+  return std::fabs(damping) < 9995 ? Formatted("%.3g N·s/m", damping)
+                                   : Formatted("%.3g kN·s/m", 1e-3 * damping);
+}
+
 void AddStiffness(const ContactReport& r, std::string* text) {
-  const double each = 1e-3 * r.wall.stiffness;
+  const std::string each = StiffnessText(r.wall.stiffness);
   const Surface::Kind kind = r.surfaces[0].kind;
   if (r.yields)
-    AppendLine(text, "    stiffness        %.3g kN/m at each point", each);
+    AppendLine(text, "    stiffness        %s at each point", each.c_str());
   else if (kind == Surface::Kind::kTable || kind == Surface::Kind::kFloor)
-    AppendLine(text, "    stiffness        not given (in the simulation, %.3g kN/m at each point)",
-               each);
+    AppendLine(text, "    stiffness        not given (in the simulation, %s at each point)",
+               each.c_str());
   else
-    AppendLine(text, "    stiffness        rigid (in the simulation, %.3g kN/m at each point)",
-               each);
+    AppendLine(text, "    stiffness        rigid (in the simulation, %s at each point)",
+               each.c_str());
 }
 
 void AddLimit(const ContactReport& r, std::string* text) {
   const char* instead = r.yields ? "" : ", as a spring without damping";
   if (!r.limit.reached)
-    AppendLine(text, "    stable up to     more than %.3g kN/m%s", 1e-3 * kStiffestWall, instead);
+    AppendLine(text, "    stable up to     more than %s%s", StiffnessText(kStiffestWall).c_str(),
+               instead);
   else if (r.limit.stiffness > 0)
-    AppendLine(text, "    stable up to     %.3g kN/m in all%s; oscillates at %.1f Hz above",
-               1e-3 * r.limit.stiffness, instead, r.limit.frequency);
+    AppendLine(text, "    stable up to     %s in all%s; oscillates at %.1f Hz above",
+               StiffnessText(r.limit.stiffness).c_str(), instead, r.limit.frequency);
+  else if (r.at_start)
+    AppendLine(text,
+               "    stable up to     not computed: without the contact of the start, the loop "
+               "oscillates at %.1f Hz",
+               r.limit.frequency);
   else
     AppendLine(text, "    stable up to     0 kN/m: oscillates at %.1f Hz even without contact",
                r.limit.frequency);
 }
 
 std::string MovingText(const FeltImpedance& felt) {
-  return Formatted("stiffness %.3g kN/m (requested %.3g), damping %.3g N·s/m (requested %.3g)%s",
-                   1e-3 * felt.rendered.real(), 1e-3 * felt.requested.real(),
-                   DampingOf(felt.rendered, kFeltFrequency),
-                   DampingOf(felt.requested, kFeltFrequency),
-                   felt.rendered.imag() < 0 ? " (the arms' lag feeds energy in)" : "");
+  return "stiffness " + StiffnessText(felt.rendered.real()) + " (requested " +
+         StiffnessText(felt.requested.real()) + "), damping " +
+         DampingText(DampingOf(felt.rendered, kFeltFrequency)) + " (requested " +
+         DampingText(DampingOf(felt.requested, kFeltFrequency)) + ")" +
+         (felt.rendered.imag() < 0 ? " (the arms' lag feeds energy in)" : "");
 }
 
 void AddMass(const char* when, const AddedMass& added, std::string* text) {
@@ -205,8 +223,9 @@ void AddContact(const ContactReport& r, std::string* text) {
              n.x(), n.y(), n.z(), r.stable ? "stable" : "UNSTABLE");
   AddStiffness(r, text);
   AddLimit(r, text);
-  AppendLine(text, "    felt at rest     stiffness %.3g kN/m (requested %.3g)",
-             1e-3 * r.at_rest.rendered.real(), 1e-3 * r.at_rest.requested.real());
+  AppendLine(text, "    felt at rest     stiffness %s (requested %s)",
+             StiffnessText(r.at_rest.rendered.real()).c_str(),
+             StiffnessText(r.at_rest.requested.real()).c_str());
   AppendLine(text, "    felt at %.0f Hz     %s", kFeltFrequency, MovingText(r.moving).c_str());
   if (r.pushed) AddMass("if pushed", *r.pushed, text);
   if (r.held) AddMass("if held", *r.held, text);

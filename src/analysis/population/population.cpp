@@ -146,8 +146,11 @@ void DescribeDesigns(const std::vector<Prepared>& designs, PopulationStudy* stud
   const assessment::ComparedDesign first = ComparedOf(designs.front());
   for (const Prepared& prepared : designs) {
     const assessment::ComparedDesign other = ComparedOf(prepared);
-    for (const std::string& line : DesignDifferences(first, other))
-      study->differences_of_designs.push_back(line);
+    for (const std::string& line : DesignDifferences(first, other)) {
+      // Another height of the handles moves the ground, which is no further difference.
+      const bool by_height = prepared.design.height && line.starts_with("operator.stance.ground");
+      if (!by_height) study->differences_of_designs.push_back(line);
+    }
     if (prepared.design.scenario == designs.front().design.scenario) continue;
     if (const std::string warning = HandleHeightWarning(first, other); !warning.empty())
       study->warnings.push_back(warning);

@@ -72,16 +72,19 @@ std::vector<Margin> CobotMargins::results() const {
   constexpr Unit kAngle = {"rad", "°", kDegrees, 1};
   constexpr Unit kLength = {"m", "mm", 1e3, 0};
   constexpr Unit kFine = {"m", "m", 1, 3};
-  constexpr Unit kPlain = {"", "", 1, 4};
+  constexpr Unit kVolume = {"m^3", "m³", 1, 3};
+  constexpr Unit kMixed = {"", "", 1, 3};  // a sliding joint has another unit
   struct Row {
     const char* what;
     Unit unit;
   };
-  constexpr Row kRows[kKinds] = {{"distance of a rotating joint from its limit", kAngle},
-                                 {"distance of a sliding joint from its limit", kLength},
-                                 {"smallest singular value of the Jacobian", kFine},
-                                 {"translational manipulability", kPlain},
-                                 {"distance of the nearest link pair of the arms", kLength}};
+  bool slides = false;
+  for (int j = 0; cobot_ && j < cobot_->dof(); ++j) slides = slides || cobot_->is_prismatic(j);
+  const Row kRows[kKinds] = {{"distance of a rotating joint from its limit", kAngle},
+                             {"distance of a sliding joint from its limit", kLength},
+                             {"smallest singular value of the Jacobian", kFine},
+                             {"translational manipulability", slides ? kMixed : kVolume},
+                             {"distance of the nearest link pair of the arms", kLength}};
   std::vector<Margin> margins;
   for (std::size_t kind = 0; kind < kKinds; ++kind) {
     const Smallest& s = smallest_[kind];

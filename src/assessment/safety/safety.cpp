@@ -56,7 +56,7 @@ void AddGaps(const Scenario& scenario, const SafetyOptions& options, const Safet
           "cobot at a force (cobot.safety.force)");
   }
   add("distance between the person's body and the links of the cobot",
-      "the links have no shape in this simulation");
+      "the evaluation does not load the shapes of the links");
   if (!run.scene().knows_the_outline())
     add("speed of the points of the object beside its origin and its handles",
         "the recording contains no simple shapes of the object (meshes are not used here), so its "

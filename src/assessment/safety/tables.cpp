@@ -111,10 +111,14 @@ SafetyTable LettingGoTable(const SafetyAssessment& safety) {
         drop.beside_feet > 0
             ? Formatted("with its origin %.2f m beside the feet", drop.beside_feet).c_str()
             : "with its origin above the feet"));
+    const double pulled = drop.jump - drop.weight_of_hand;  // the hand's largest force down [N]
     table.notes.push_back(Formatted(
-        "If the cobot lost its force, each hand would carry %.0f N, which is up to %.0f N "
-        "more than it carried in the run.",
-        drop.weight_of_hand, drop.jump));
+        "If the cobot lost its force, each hand would carry %.0f N. The force of a hand would "
+        "change by up to %.0f N%s.",
+        drop.weight_of_hand, drop.jump,
+        pulled > 0.5
+            ? Formatted(", because a hand pulled down with up to %.0f N in the run", pulled).c_str()
+            : ""));
   }
   const Separation& s = safety.separation;
   table.notes.push_back(Formatted(

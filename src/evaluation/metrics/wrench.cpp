@@ -23,7 +23,7 @@ class Wrench final : public Metric {
                          const Unit& unit, const Statistics& values) {
       const std::string hand = kHandNames[i];
       results->push_back({.path = "wrench." + hand + "." + key,
-                          .group = "Hands",
+                          .group = "Hands, whole run",
                           .label = hand + " hand",
                           .column = quantity,
                           .unit = unit,
