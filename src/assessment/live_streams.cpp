@@ -70,7 +70,8 @@ void LiveStreams::Take(const StreamSample& sample, std::uint64_t newest_ns) {
 
 bool LiveStreams::IsAwaited(std::uint64_t tick_ns, std::uint64_t newest_ns) const {
   return std::ranges::any_of(streams_, [&](const Stream& stream) {
-    return stream.awaited && stream.last_ns != 0 && stream.last_ns < tick_ns &&
+    const double last = Seconds(stream.last_ns) + stream.track.offset();
+    return stream.awaited && stream.last_ns != 0 && last < Seconds(tick_ns) &&
            Seconds(newest_ns) <=
                Seconds(stream.last_ns) + tracks::PartTrack::kMaxGap + kLongestStreamDelay;
   });

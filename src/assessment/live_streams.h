@@ -43,7 +43,7 @@ class LiveStreams {
   // and the origin of the head in `state`.
   void AddTo(double clock, const PersonSetup& setup, PersonSample* sample, PersonState* state);
   // Returns the activations that electromyograms measured at `clock` [s], and sets the inputs of
-  // `state`. They need samples until kEmgLookahead later. `run_time` is the simulated time [s].
+  // `state`. They need samples until kEmgSettling later. `run_time` is the simulated time [s].
   std::array<MeasuredActivations, kHands> ActivationsAt(double clock, double run_time,
                                                         PersonState* state);
   bool has_emg() const { return !emg_.empty(); }

@@ -127,6 +127,7 @@ StreamTrack::StreamTrack(const StreamDescription& stream) {
   if (map_.MapsNothing())
     throw InputError(file_.name, "The stream has no channel that can be used.");
   track_ = ApplyMapToPart(map_, file_);  // also checks that the channels exist and have units
+  track_.offset = 0;                     // Take adds the offset to the times
 }
 
 void StreamTrack::Take(double time, std::span<const double> values) {

@@ -38,6 +38,7 @@ class StreamTrack {
 
   const std::string& name() const { return file_.name; }
   std::size_t channels() const { return file_.series.size(); }
+  double offset() const { return map_.offset; }  // added to the times of the samples [s]
   // Takes the next sample. `time` is by the clock of the user of the track [s]. A sample is left
   // out if it is not later than the previous one or has another number of channels.
   void Take(double time, std::span<const double> values);
@@ -46,6 +47,7 @@ class StreamTrack {
   void Convert();
   // Forgets what was measured before `time` [s].
   void Forget(double time);
+  // Its times contain the offset already.
   const BodyTrack& track() const { return track_; }
 
  private:

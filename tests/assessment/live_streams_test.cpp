@@ -6,10 +6,12 @@
 
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "assessment/assessment.h"
 #include "assessment/live_person.h"
+#include "assessment/measured_body.h"
 #include "assessment/samples.h"
 #include "core/error.h"
 
@@ -39,6 +41,18 @@ tracks::StreamDescription Electrode() {
 tracks::StreamDescription Tracker() {
   tracks::StreamDescription stream{.name = "tracker", .rate = 100};
   stream.channels = {"left_elbow.p.x", "left_elbow.p.y", "left_elbow.p.z"};
+  stream.units = {"m", "m", "m"};
+  return stream;
+}
+
+// The device sends each position 50 ms after it measured it.
+tracks::StreamDescription LateTracker() {
+  tracks::StreamDescription stream{.name = "tracker", .rate = 100};
+  stream.map =
+      "stream: tracker\n"
+      "offset: -0.05\n"
+      "left_elbow: {position: [LE]}\n";
+  stream.channels = {"LE.x", "LE.y", "LE.z"};
   stream.units = {"m", "m", "m"};
   return stream;
 }
@@ -78,8 +92,9 @@ std::vector<PersonState> FollowStream(const tracks::StreamDescription& stream, S
   return states;
 }
 
-Assessment AssessStream(const tracks::StreamDescription& stream, Source source, std::uint64_t every,
-                        std::uint64_t last) {
+// Returns what a recording of the ticks 1 to `last` contains.
+tracks::BodyTrack RecordedTrack(const tracks::StreamDescription& stream, Source source,
+                                std::uint64_t every, std::uint64_t last) {
   tracks::StreamTrack track(stream);
   for (std::uint64_t tick = every; tick <= last; tick += every) {
     const StreamSample sample = source(tick);
@@ -87,9 +102,15 @@ Assessment AssessStream(const tracks::StreamDescription& stream, Source source, 
                std::span(sample.values).first(sample.count));
   }
   track.Convert();
+  tracks::BodyTrack recorded = track.track();
+  recorded.of_the_run = true;
+  return recorded;
+}
+
+Assessment AssessStream(const tracks::StreamDescription& stream, Source source, std::uint64_t every,
+                        std::uint64_t last) {
   AssessOptions options;
-  options.tracks = {track.track()};
-  options.tracks[0].of_the_run = true;
+  options.tracks = {RecordedTrack(stream, source, every, last)};
   options.intervals = false;
   return Assess(PersonScenario(), 9,
                 RunOf(Collect(PersonScenario(), 1e-3 * static_cast<double>(last), TickAt)),
@@ -147,6 +168,48 @@ TEST(LiveStreams, MoveTheActivationsAsInTheRecordedRun) {
   EXPECT_GT(difference, 0.1);
   EXPECT_EQ(InputOf(without.back(), PersonInput::kRightEmg).status, InputStatus::kMissing);
   EXPECT_EQ(InputOf(with.back(), PersonInput::kLeftEmg).status, InputStatus::kNone);
+}
+
+TEST(LiveStreams, AddTheOffsetOnceAsInTheRecordedRun) {
+  const tracks::StreamDescription stream = LateTracker();
+  const SampleCollector run = Collect(PersonScenario(), 0.6, TickAt);
+  const PersonSetup setup = SetupOf(PersonScenario(), RunOf(run).handles);
+  const tracks::BodyTrack track = RecordedTrack(stream, Elbow, 10, 600);
+  std::vector<PersonSample> recorded = run.samples();
+  AddTracks(std::span(&track, 1), setup, 0, &recorded);
+  LiveStreams live(std::span(&stream, 1));
+  for (std::uint64_t tick = 10; tick <= 600; tick += 10)
+    live.Take(Elbow(tick), TickAt(tick).wall_ns);
+  std::size_t measured = 0;
+  for (std::size_t i = 0; i < recorded.size(); ++i) {
+    PersonSample sample = run.samples()[i];
+    PersonState state;
+    const double clock = Seconds(TickAt(1).wall_ns) + sample.by_clock;
+    live.Update(clock, sample.body.time, &state);
+    live.AddTo(clock, setup, &sample, &state);
+    const auto &now = sample.body.p_WElbow[0], &afterwards = recorded[i].body.p_WElbow[0];
+    ASSERT_EQ(now.has_value(), afterwards.has_value()) << i;
+    if (!now) continue;
+    ++measured;
+    EXPECT_NEAR((*now - *afterwards).norm(), 0, 1e-9) << i;
+    // The position at this time was sent at a later tick.
+    const double sent = 1e3 * (sample.by_clock + 0.05) + 1;
+    EXPECT_NEAR(now->y(), -0.25 - 1e-4 * sent, 1e-9) << i;
+  }
+  EXPECT_GE(measured, 50u);  // of 60; what was measured in the last 50 ms is sent after the end
+}
+
+TEST(LiveStreams, WaitForWhatADeviceSendsLate) {
+  const tracks::StreamDescription late = LateTracker(), prompt = Tracker();
+  LiveStreams streams(std::span(&late, 1)), others(std::span(&prompt, 1));
+  const std::uint64_t now = TickAt(100).wall_ns;
+  streams.Take(Elbow(100), now);  // measured at tick 50
+  others.Take(Elbow(100), now);
+  EXPECT_FALSE(streams.IsAwaited(TickAt(45).wall_ns, now));
+  EXPECT_TRUE(streams.IsAwaited(TickAt(55).wall_ns, now));
+  EXPECT_TRUE(streams.IsAwaited(TickAt(95).wall_ns, now));
+  EXPECT_FALSE(others.IsAwaited(TickAt(95).wall_ns, now));
+  EXPECT_FALSE(streams.IsAwaited(TickAt(95).wall_ns, TickAt(1000).wall_ns));  // the stream ended
 }
 
 TEST(LiveStreams, RefuseWhatIsMeasuredTwice) {

@@ -42,6 +42,7 @@ TEST(StreamTrack, ConvertsSamplesInParts) {
   }
   track.Convert();
   const BodyTrack& body = track.track();
+  EXPECT_EQ(body.offset, 0);  // the times contain it already
   ASSERT_TRUE(body.elbows[0]);
   EXPECT_EQ(body.elbows[0]->times.size(), 10u);
   // The frame is rotated by 90° about z, and its origin is 1 m above that of W.
