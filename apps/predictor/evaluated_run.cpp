@@ -6,6 +6,7 @@
 
 #include "assessment/measured_head.h"
 #include "core/error.h"
+#include "core/format.h"
 #include "models/object_model.h"
 #include "models/robot.h"
 #include "models/urdf.h"
@@ -67,20 +68,46 @@ std::optional<tracks::BodyTrack> HeadOf(const RecordingReader& reader) {
   return track;
 }
 
+// Throws InputError if the stream cannot be used.
+tracks::BodyTrack TrackOf(const RecordedStream& recorded) {
+  if (recorded.description.empty())
+    throw InputError("The recording has lost the description of this stream.");
+  tracks::StreamTrack stream(tracks::ParseStream(recorded.description));
+  if (recorded.channels != stream.channels())
+    throw InputError(stream.name(),
+                     "The samples have another number of channels than the description.");
+  const std::span<const double> values = recorded.values;
+  for (std::size_t i = 0; i < recorded.times.size(); ++i)
+    stream.Take(recorded.times[i], values.subspan(i * recorded.channels, recorded.channels));
+  stream.Convert();
+  tracks::BodyTrack track = stream.track();
+  track.of_the_run = true;
+  if (!recorded.complete)
+    track.warnings.push_back(
+        Formatted("Only the samples of the first %.0f s are used, because the streams in the "
+                  "recording have too many samples.",
+                  recorded.times.back()));
+  return track;
+}
+
+// The ticks can be evaluated without the streams, so a damaged stream only causes a message.
+std::vector<RecordedStream> ReadStreamsOf(const RecordingReader& reader) {
+  try {
+    return reader.ReadStreams();
+  } catch (const InputError& error) {
+    TheScreen().Print(std::string("The streams in the recording are not used: ") + error.what());
+    return {};
+  }
+}
+
 // Returns the streams that other systems sent during the run. A stream that cannot be used is left
 // out, and the reason is printed.
 std::vector<tracks::BodyTrack> StreamsOf(const RecordingReader& reader) {
   std::vector<tracks::BodyTrack> tracks;
-  for (const RecordedStream& recorded : reader.ReadStreams()) {
+  for (const RecordedStream& recorded : ReadStreamsOf(reader)) {
     if (recorded.times.empty()) continue;
     try {
-      tracks::StreamTrack stream(tracks::ParseStream(recorded.description));
-      const std::span<const double> values = recorded.values;
-      for (std::size_t i = 0; i < recorded.times.size(); ++i)
-        stream.Take(recorded.times[i], values.subspan(i * recorded.channels, recorded.channels));
-      stream.Convert();
-      tracks::BodyTrack& track = tracks.emplace_back(stream.track());
-      track.of_the_run = true;
+      tracks.push_back(TrackOf(recorded));
     } catch (const InputError& error) {
       TheScreen().Print(std::string("A stream in the recording is not used: ") + error.what());
     }

@@ -60,10 +60,11 @@ JsonChannel SamplesChannel();
 
 // A stream that was recorded during the run.
 struct RecordedStream {
-  std::string description;     // JSON object; the reader does not check its content
+  std::string description;     // JSON object with unchecked content; "": it is lost
   std::size_t channels = 0;    // 0: no samples
   std::vector<double> times;   // since the start of the recording [s]
   std::vector<double> values;  // `channels` values for each time; NaN: missing
+  bool complete = true;        // false: the recording has more samples than the reader reads
 };
 
 // An event, for example a marker, lost ticks or a stop.

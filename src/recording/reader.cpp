@@ -247,15 +247,19 @@ void RecordingReader::Impl::TakeSamples(std::size_t i, const Message& message,
   const auto start = static_cast<std::uint64_t>(opening.header.start_unix_ns);
   const std::size_t stream =
       message.data.size() > kLongestSamples ? kMaxStreams : recording::StreamOf(message.data);
-  if (message.time < start || stream >= streams->size() ||
-      !recording::ParseSamples(message.data, stream,
-                               1e-9 * static_cast<double>(message.time - start),
-                               &(*streams)[stream]))
-    file.Fail(chunks[i].offset, "This chunk contains invalid samples of a stream.");
-  std::size_t values = 0;
+  const auto check = [&](bool good) {
+    if (!good) file.Fail(chunks[i].offset, "This chunk contains invalid samples of a stream.");
+  };
+  check(message.time >= start && stream < kMaxStreams);
+  // The chunk with the descriptions may be lost.
+  if (streams->size() <= stream) streams->resize(stream + 1);
+  RecordedStream& to = (*streams)[stream];
+  std::size_t values = recording::kMaxSamplesInMessage * kMaxStreamChannels;
   for (const RecordedStream& one : *streams) values += one.values.size();
-  if (values > kMaxStreamValues)
-    file.Fail(chunks[i].offset, "The recording contains too many samples of streams.");
+  to.complete = to.complete && values <= kMaxStreamValues;
+  if (!to.complete) return;
+  const double time = 1e-9 * static_cast<double>(message.time - start);
+  check(recording::ParseSamples(message.data, stream, time, &to));
 }
 
 // Calls take(chunk, message) for each message of the channel.

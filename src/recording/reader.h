@@ -70,8 +70,8 @@ class RecordingReader {
   // recording has no such stream. Throws InputError.
   std::vector<RecordedHead> ReadHeads() const;
 
-  // Reads the streams that other systems sent. Returns none if the recording has none. Throws
-  // InputError.
+  // Reads the streams that other systems sent, up to a limit of the memory. Returns none if the
+  // recording has none. Throws InputError.
   std::vector<RecordedStream> ReadStreams() const;
 
   // Reads the whole file and verifies the CRC of the file, each chunk, and each message against its

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <deque>
 #include <exception>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -196,6 +197,7 @@ struct Recorder::Impl {
   std::optional<HeadRecord> next_head;
   std::optional<StreamSample> next_sample;
   std::array<std::vector<StreamSample>, kMaxStreams> batches;  // samples for the next messages
+  std::map<std::uint32_t, std::uint32_t> counts;  // channels of each stream, which stay the same
   bool described = false;                 // whether the streams' descriptions are in the recording
   std::uint64_t seen = 0;                 // number of lost ticks noticed so far
   std::uint64_t noted = 0;                // number of them that an event in the file reports
@@ -329,8 +331,7 @@ void Recorder::Impl::TakeHeads(bool all) {
   }
 }
 
-// Samples wait as heads do. The samples of a stream are collected, because a message for each
-// sample would take several times as much space.
+// Samples wait as heads do. They are collected, because a message for each takes more space.
 void Recorder::Impl::TakeSamples(bool all) {
   if (!samples || newest_ns == 0) return;
   if (!std::exchange(described, true))
@@ -352,10 +353,10 @@ void Recorder::Impl::TakeSamples(bool all) {
 
 void Recorder::Impl::Collect(const StreamSample& sample) {
   if (sample.stream >= options.streams.size()) return;
+  if (counts.try_emplace(sample.stream, sample.count).first->second != sample.count) return;
   std::vector<StreamSample>& batch = batches[sample.stream];
-  // A message has one number of channels, one offset, and ascending times.
-  const bool begins = !batch.empty() && (sample.count != batch.back().count ||
-                                         sample.clock_offset != batch.back().clock_offset ||
+  // A message has one offset, and ascending times.
+  const bool begins = !batch.empty() && (sample.clock_offset != batch.back().clock_offset ||
                                          sample.wall_ns <= batch.back().wall_ns ||
                                          sample.wall_ns - batch.front().wall_ns > 10 * kBatchTime);
   if (begins || batch.size() == recording::kMaxSamplesInMessage)

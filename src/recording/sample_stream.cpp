@@ -1,5 +1,6 @@
 #include "recording/sample_stream.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>

@@ -108,6 +108,21 @@ TEST(SampleStream, LeavesOutWhatIsNotPlausible) {
   EXPECT_EQ(reader.ReadStreams().at(1).values, (std::vector<double>{71}));
 }
 
+// The sender may change while the receiver is restarted.
+TEST(SampleStream, LeavesOutAnotherNumberOfChannels) {
+  const Folder folder;
+  const std::string file = folder.File("run.mcap");
+  RecordStreams(file, {SampleAt(0, 100, {1, 2}), SampleAt(0, 102, {3}), SampleAt(1, 104, {70}),
+                       SampleAt(0, 106, {4, 5, 6}), SampleAt(0, 108, {7, 8})});
+  RecordingReader reader(file);
+  reader.Check();
+  const auto streams = reader.ReadStreams();
+  ASSERT_EQ(streams.size(), 2u);
+  EXPECT_EQ(streams[0].values, (std::vector<double>{1, 2, 7, 8}));
+  EXPECT_EQ(streams[1].values, (std::vector<double>{70}));
+  EXPECT_TRUE(streams[0].complete);
+}
+
 TEST(SampleStream, IsKeptByRepairAndNotShared) {
   const Folder folder;
   const std::string file = folder.File("run.mcap"), cut = folder.File("cut.mcap"),
