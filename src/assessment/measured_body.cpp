@@ -159,6 +159,7 @@ UsedTrack Relate(const tracks::BodyTrack& track, double start_unix,
 std::pair<double, double> SpanOf(const tracks::BodyTrack& track) {
   double first = INFINITY, last = -INFINITY;
   const auto add = [&](const std::vector<double>& times) {
+    if (times.empty()) return;
     first = std::min(first, times.front());
     last = std::max(last, times.back());
   };
@@ -213,12 +214,45 @@ void AddTrack(const tracks::BodyTrack& track, const PersonSetup& setup, double s
   CheckUnique(*body);
 }
 
+// Removes from a track of the run what another track measures already. The rest can still be used.
+void LeaveOutWhatIsMeasured(tracks::BodyTrack* track, MeasuredBody* body) {
+  for (const MeasuredPart& part : body->parts) {
+    std::optional<tracks::PartTrack>* const here = part.what == "head"          ? &track->head
+                                                   : part.what == "left elbow"  ? &track->elbows[0]
+                                                   : part.what == "right elbow" ? &track->elbows[1]
+                                                                                : nullptr;
+    if (here == nullptr || !*here) continue;
+    here->reset();
+    body->warnings.push_back("The " + part.what + " of " + Printable(track->source) +
+                             " in the recording is not used, because " + Printable(part.source) +
+                             " measures it too.");
+  }
+  std::erase_if(track->emg, [&](const tracks::EmgTrack& emg) {
+    try {
+      DescribeEmg(emg, track->source, body->emg.channels);
+      return false;
+    } catch (const InputError& error) {
+      body->warnings.push_back(std::string("An electromyogram in the recording is not used: ") +
+                               error.what());
+      return true;
+    }
+  });
+}
+
+bool IsEmpty(const tracks::BodyTrack& track) {
+  return !track.head && !track.elbows[0] && !track.elbows[1] && track.signals.empty() &&
+         track.emg.empty();
+}
+
 void AddTrackOfTheRun(const tracks::BodyTrack& track, const PersonSetup& setup, double start_unix,
                       std::vector<PersonSample>* samples, MeasuredBody* body) {
+  tracks::BodyTrack rest = track;
+  LeaveOutWhatIsMeasured(&rest, body);
+  if (IsEmpty(rest)) return;
   std::vector<PersonSample> with = *samples;
   MeasuredBody measured = *body;
   try {
-    AddTrack(track, setup, start_unix, &with, &measured);
+    AddTrack(rest, setup, start_unix, &with, &measured);
   } catch (const InputError& error) {
     body->warnings.push_back(std::string("The measurement in the recording is not used: ") +
                              error.what());

@@ -55,8 +55,9 @@ struct MeasuredBody {
 // estimated, or if most positions of a track are impossible for this person at this place (wrong
 // unit, frame or marker). If only a few positions are impossible, these positions are left out and
 // counted. Electromyograms are converted by AddEmg. A track of the run itself
-// (BodyTrack::of_the_run) is left out with a warning instead of an error. Pass this track after the
-// others, so that a file that measures the same part is used.
+// (BodyTrack::of_the_run) is left out with a warning instead of an error. If earlier tracks measure
+// some of its parts or muscles, only these are left out. Pass this track after the others, so that
+// a file that measures the same part is used.
 MeasuredBody AddTracks(std::span<const tracks::BodyTrack> tracks, const PersonSetup& setup,
                        double start_unix, std::vector<PersonSample>* samples);
 

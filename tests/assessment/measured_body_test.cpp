@@ -281,5 +281,25 @@ TEST(MeasuredBody, PrefersAGivenHeadToThatOfTheRun) {
   EXPECT_EQ(a.measured.parts[0].source, "body.csv");
 }
 
+// The headset and a stream both measure the head, and only the stream measures the elbows.
+TEST(MeasuredBody, UsesTheRestOfATrackOfTheRun) {
+  const Truth truth = TruthOf(MadeRun());
+  tracks::BodyTrack headset = TrackOf(truth, true, false), stream = TrackOf(truth, true, true);
+  headset.source = "the headset";
+  stream.source = "stream trackers";
+  headset.of_the_run = stream.of_the_run = true;
+  const Assessment a = JudgeWith({headset, stream});
+  std::vector<std::string> parts;
+  for (const MeasuredPart& part : a.measured.parts)
+    parts.push_back(part.what + " by " + part.source);
+  EXPECT_EQ(parts, (std::vector<std::string>{"head by the headset", "head rotation by the headset",
+                                             "left elbow by stream trackers",
+                                             "right elbow by stream trackers"}));
+  EXPECT_TRUE(std::ranges::any_of(a.warnings, [](const std::string& warning) {
+    return warning.find("The head of stream trackers in the recording is not used") !=
+           std::string::npos;
+  }));
+}
+
 }  // namespace
 }  // namespace predictor::assessment
