@@ -98,8 +98,13 @@ void LivePerson::BeginAgain() {
 }
 
 bool LivePerson::Wait(const TickRecord& record) {
+  // The samples of a long pause would otherwise fill the memory.
+  if (record.tick % 100 == 0) streams_.Convert(Seconds(record.wall_ns));
   if (state_.status == PersonStatus::kWaiting) return false;
   Rest(PersonStatus::kWaiting);
+  InputStatus& heart_rate = state_.inputs[static_cast<std::size_t>(PersonInput::kHeartRate)].status;
+  if (heart_rate != InputStatus::kNone) heart_rate = InputStatus::kMissing;
+  state_.heart_rate = kUnknown;
   state_.tick = record.tick;
   state_.wall_ns = record.wall_ns;
   state_.run_time = record.run_time;

@@ -12,6 +12,9 @@ namespace {
 
 constexpr double kKeptTime = kOldestHeartRate + 1;  // measurements that are kept [s]
 constexpr double kEmgWindow = 1;                    // from which an activation is computed [s]
+// At the beginning and after a gap, a channel fails for less than kEmgWindow. Only a longer failure
+// is reported (design choice) [s].
+constexpr double kEmgPatience = 2 * kEmgWindow;
 
 InputState& Input(PersonState* state, PersonInput input) {
   return state->inputs[static_cast<std::size_t>(input)];
@@ -56,6 +59,7 @@ LiveStreams::LiveStreams(std::span<const tracks::StreamDescription> streams) {
     for (const tracks::SignalTrack& signal : track.signals)
       if (IsHeartRate(signal)) RefuseTwice("heart rate", name, &heart_rate);
     for (const tracks::EmgTrack& emg : track.emg) emg_.push_back(DescribeEmg(emg, name, emg_));
+    emg_failures_.resize(emg_.size());
     added.awaited = track.head || track.elbows[0] || track.elbows[1] || !track.emg.empty();
   }
 }
@@ -102,8 +106,18 @@ void LiveStreams::AddTo(double clock, const PersonSetup& setup, PersonSample* sa
     for (std::size_t h = 0; h < kHands; ++h)
       if (track.elbows[h]) AddElbow(*track.elbows[h], h, clock, setup, sample, state);
     if (track.head && state->head == HeadSource::kModelled)
-      state->head = AddHeadAt(clock, *track.head, setup, sample, &head_);
+      AddHead(*track.head, clock, setup, sample, state);
   }
+}
+
+// As LiveHead::AddTo.
+void LiveStreams::AddHead(const tracks::PartTrack& head, double clock, const PersonSetup& setup,
+                          PersonSample* sample, PersonState* state) {
+  PersonSample with = *sample;
+  state->head = AddHeadAt(clock, head, setup, &with, &head_);
+  if (state->head == HeadSource::kModelled) return;
+  if (head_.MostlyImpossible()) state->head = HeadSource::kImpossible;
+  if (state->head == HeadSource::kMeasured) *sample = std::move(with);
 }
 
 void LiveStreams::AddElbow(const tracks::PartTrack& elbow, std::size_t hand, double clock,
@@ -141,9 +155,10 @@ std::array<MeasuredActivations, kHands> LiveStreams::ActivationsAt(double clock,
   std::array<bool, kHands> expected{}, measured{};
   for (const Stream& stream : streams_)
     for (const tracks::EmgTrack& emg : stream.track.track().emg) {
-      MeasuredEmg& channel = emg_[next++];
+      MeasuredEmg& channel = emg_[next];
       const auto hand = static_cast<std::size_t>(channel.hand);
-      channel.measured = {ActivationOf(Since(clock - kEmgWindow, emg), clock)};
+      channel.measured = {
+          ActivationOf(Since(clock - kEmgWindow, emg), clock, &emg_failures_[next++])};
       expected[hand] = true;
       measured[hand] = measured[hand] || std::isfinite(channel.measured[0]);
     }
@@ -156,11 +171,15 @@ std::array<MeasuredActivations, kHands> LiveStreams::ActivationsAt(double clock,
 }
 
 // Returns NaN if the channel cannot be used at this time.
-double LiveStreams::ActivationOf(const tracks::EmgTrack& emg, double clock) {
+double LiveStreams::ActivationOf(const tracks::EmgTrack& emg, double clock, EmgFailure* failure) {
   try {
-    if (!emg.times.empty()) return ActivationsOf(emg).At(clock, 1 / kSampleRate);
+    const double activation =
+        emg.times.empty() ? tracks::kMissing : ActivationsOf(emg).At(clock, 1 / kSampleRate);
+    failure->since.reset();
+    return activation;
   } catch (const InputError& error) {
-    if (!std::exchange(emg_failed_, true))
+    if (!failure->since) failure->since = clock;
+    if (clock - *failure->since > kEmgPatience && !std::exchange(failure->reported, true))
       problems_.push_back("The electromyogram " + Quote(emg.map.channel) + ": " + error.what());
   }
   return tracks::kMissing;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -35,6 +36,9 @@ class LiveStreams {
   // clock `tick_ns`, as LiveHead::IsAwaited.
   bool IsAwaited(std::uint64_t tick_ns, std::uint64_t newest_ns) const;
 
+  // Converts the samples that were taken, and forgets those that are too old for an evaluation at
+  // the monotonic clock `clock` [s]. Update does this, too. Call this function during a pause.
+  void Convert(double clock);
   // Sets the heart rate in `state`. Call this function before the two functions below, with each
   // sample. `clock` is the monotonic clock at the sample [s], and `run_time` the simulated time
   // [s].
@@ -59,18 +63,24 @@ class LiveStreams {
     bool awaited = false;       // it measures a part of the body or a muscle
     bool failed = false;        // a problem was reported
   };
-  void Convert(double clock);
+  // A channel of an electromyogram that cannot be used.
+  struct EmgFailure {
+    std::optional<double> since;  // monotonic clock [s]
+    bool reported = false;
+  };
+  void AddHead(const tracks::PartTrack& head, double clock, const PersonSetup& setup,
+               PersonSample* sample, PersonState* state);
   void AddElbow(const tracks::PartTrack& elbow, std::size_t hand, double clock,
                 const PersonSetup& setup, PersonSample* sample, PersonState* state);
   static void AddHeartRate(const tracks::SignalTrack& signal, double clock, double run_time,
                            PersonState* state);
-  double ActivationOf(const tracks::EmgTrack& emg, double clock);
+  double ActivationOf(const tracks::EmgTrack& emg, double clock, EmgFailure* failure);
 
   std::vector<Stream> streams_;
   std::array<PositionCount, kHands> elbows_;
   PositionCount head_;
-  std::vector<MeasuredEmg> emg_;  // the channels of all streams; `measured` has one value
-  bool emg_failed_ = false;       // a problem was reported
+  std::vector<MeasuredEmg> emg_;          // the channels of all streams; `measured` has one value
+  std::vector<EmgFailure> emg_failures_;  // of these channels
   std::vector<std::string> problems_;
 };
 

@@ -114,6 +114,11 @@ void ForgetValues(PersonState* state) {
   state->reached = 0;
   state->miss = 0;
   state->warnings = 0;
+  using enum PersonInput;
+  for (const PersonInput input : {kLeftElbow, kRightElbow, kLeftEmg, kRightEmg}) {
+    InputStatus& status = state->inputs[static_cast<std::size_t>(input)].status;
+    if (status != InputStatus::kNone) status = InputStatus::kMissing;
+  }
 }
 
 LiveIntervals::LiveIntervals(const PersonSetup& setup, const WorkPattern& work)

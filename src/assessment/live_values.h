@@ -16,7 +16,8 @@ void WriteFrame(const JudgedSample& judged, PersonState* state);
 
 // Writes intervals and probabilities from the frames of all possible people.
 void WriteIntervals(std::span<const Frame> frames, const PersonSample& sample, PersonState* state);
-// Sets all values that WriteFrame and WriteIntervals write to unknown.
+// Sets all values that WriteFrame and WriteIntervals write to unknown. Elbows and electromyograms,
+// which are only read while a posture is evaluated, are then missing.
 void ForgetValues(PersonState* state);
 
 // Evaluates the possible people a few at a time, so that the evaluation of the nominal person is

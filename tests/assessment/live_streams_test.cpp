@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "assessment/assessment.h"
@@ -210,6 +211,76 @@ TEST(LiveStreams, WaitForWhatADeviceSendsLate) {
   EXPECT_TRUE(streams.IsAwaited(TickAt(95).wall_ns, now));
   EXPECT_FALSE(others.IsAwaited(TickAt(95).wall_ns, now));
   EXPECT_FALSE(streams.IsAwaited(TickAt(95).wall_ns, TickAt(1000).wall_ns));  // the stream ended
+}
+
+tracks::StreamDescription HeadTracker() {
+  tracks::StreamDescription stream{.name = "head", .rate = 100};
+  stream.channels = {"head.p.x", "head.p.y", "head.p.z"};
+  stream.units = {"m", "m", "m"};
+  return stream;
+}
+
+TEST(LiveStreams, GiveNoHeadWhileMostHeadsAreImpossible) {
+  const Source wrong_at_first = [](std::uint64_t tick) {
+    return Sample(tick, {0.85, 0, tick <= 300 ? 3.75 : 0.75});
+  };
+  const Source right = [](std::uint64_t tick) { return Sample(tick, {0.85, 0, 0.75}); };
+  const auto wrong = FollowStream(HeadTracker(), wrong_at_first, 10, 500),
+             good = FollowStream(HeadTracker(), right, 10, 500),
+             modelled = FollowStream(HeadTracker(), nullptr, 10, 500);
+  for (std::size_t i = 1; i < wrong.size(); ++i) {
+    EXPECT_EQ(good[i].head, HeadSource::kMeasured) << i;
+    EXPECT_EQ(wrong[i].head, HeadSource::kImpossible) << i;
+    EXPECT_EQ(wrong[i].points, modelled[i].points) << i;
+  }
+}
+
+TEST(LiveStreams, AreMissingWhileNothingIsEvaluated) {
+  tracks::StreamDescription stream = Tracker();
+  stream.channels.emplace_back("pulse");
+  stream.units.emplace_back("1/min");
+  LivePerson live(PersonScenario(), {}, std::span(&stream, 1));
+  const auto status = [&live](PersonInput input) { return InputOf(live.state(), input).status; };
+  for (std::uint64_t tick = 1; tick <= 400; ++tick) {
+    TickRecord record = TickAt(tick);
+    for (HandRecord& hand : record.hands) hand.gripping = tick <= 300 ? 1 : 0;
+    if (tick % 10 == 0) live.streams().Take(Sample(tick, {0.75, -0.25, 0.15, 70}), record.wall_ns);
+    live.Add(record);
+    if (tick != 300) continue;
+    EXPECT_EQ(status(PersonInput::kLeftElbow), InputStatus::kMeasured);
+    EXPECT_EQ(status(PersonInput::kRightElbow), InputStatus::kNone);
+  }
+  ASSERT_EQ(live.state().status, PersonStatus::kNoHand);
+  EXPECT_EQ(status(PersonInput::kLeftElbow), InputStatus::kMissing);
+  EXPECT_EQ(status(PersonInput::kRightElbow), InputStatus::kNone);
+  EXPECT_EQ(status(PersonInput::kHeartRate), InputStatus::kMeasured);
+  EXPECT_EQ(live.state().heart_rate, 70);
+  TickRecord over = TickAt(401);
+  over.ran = 0;
+  ASSERT_TRUE(live.Add(over));
+  EXPECT_EQ(status(PersonInput::kHeartRate), InputStatus::kMissing);
+  EXPECT_TRUE(std::isnan(live.state().heart_rate));
+}
+
+// Returns the problems of an electromyogram without the samples of the ticks `from` to `to`.
+std::vector<std::string> ProblemsOf(Source source, std::uint64_t last, std::uint64_t from = 0,
+                                    std::uint64_t to = 0) {
+  const tracks::StreamDescription stream = Electrode();
+  LivePerson live(PersonScenario(), {}, std::span(&stream, 1));
+  for (std::uint64_t tick = 1; tick <= last; ++tick) {
+    if (tick < from || tick > to) live.streams().Take(source(tick), TickAt(tick).wall_ns);
+    live.Add(TickAt(tick));
+  }
+  return live.streams().TakeProblems();
+}
+
+TEST(LiveStreams, ReportAnElectromyogramOnlyIfItsProblemLasts) {
+  const Source constant = [](std::uint64_t tick) { return Sample(tick, {0.1}); };
+  EXPECT_TRUE(ProblemsOf(Voltage, 1600, 700, 1000).empty());
+  EXPECT_TRUE(ProblemsOf(constant, 1500).empty());
+  const std::vector<std::string> problems = ProblemsOf(constant, 2600);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_NE(problems[0].find("the same value throughout"), std::string::npos) << problems[0];
 }
 
 TEST(LiveStreams, RefuseWhatIsMeasuredTwice) {
