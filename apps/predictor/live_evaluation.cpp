@@ -2,10 +2,18 @@
 
 #include <exception>
 
+#include "assessment/live_streams.h"
 #include "assessment/person_setup.h"
 #include "core/text.h"
 
 namespace predictor {
+
+PersonStreams::PersonStreams(const lab_streams::StreamOptions& options,
+                             const std::function<void(const std::string&)>& show)
+    : process(options, board, show) {
+  // The evaluator could only refuse them after the start of the run.
+  const assessment::LiveStreams checked(process.streams());
+}
 
 std::vector<std::string> PersonStreams::Texts() const {
   std::vector<std::string> texts;

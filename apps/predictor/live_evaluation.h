@@ -14,10 +14,9 @@ namespace predictor {
 
 // The streams of other systems that measure the person during a run.
 struct PersonStreams {
-  // Throws InputError if a stream cannot be received.
+  // Throws InputError if a stream cannot be received, or if two streams measure the same.
   PersonStreams(const lab_streams::StreamOptions& options,
-                const std::function<void(const std::string&)>& show)
-      : process(options, board, show) {}
+                const std::function<void(const std::string&)>& show);
 
   // The descriptions of the streams, for the recording.
   std::vector<std::string> Texts() const;
