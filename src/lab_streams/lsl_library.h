@@ -13,8 +13,8 @@ using LslInfo = struct LslInfoObject*;
 using LslInlet = struct LslInletObject*;
 using LslXml = struct LslXmlObject*;
 
-enum : std::int32_t { kLslNoError = 0 };
-enum : std::int32_t { kLslString = 3 };  // the channels contain words, not numbers
+enum : std::int32_t { kLslNoError = 0, kLslLost = -2 };  // lost: for good
+enum : std::int32_t { kLslString = 3 };                  // the channels contain words, not numbers
 enum : std::uint32_t { kLslClockSync = 1, kLslMonotonize = 4 };
 
 // The signatures are those of the header lsl_c.h of liblsl 1.13 and later. Times are in seconds.

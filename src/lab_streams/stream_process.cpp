@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <future>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -30,6 +31,7 @@ namespace {
 constexpr int kPause = 5;            // between two looks at the streams [ms]
 constexpr int kPriority = 5;         // niceness: lower priority than the run
 constexpr double kResolve = 5;       // time for which a stream is looked for [s]
+constexpr double kSearch = 2;        // for each look for a stream that was lost [s]
 constexpr double kOpen = 10;         // for the first contact with a stream [s]
 constexpr double kList = 1;          // for a list of all streams, for a message [s]
 constexpr int kBuffer = 4;           // of an inlet [s], or in 100 samples
@@ -87,6 +89,16 @@ LslInfo Find(const LslLibrary& lsl, const std::string& name) {
   return infos[0];
 }
 
+bool IsThere(const LslLibrary& lsl, const std::string& name) {
+  for (const char* property : {"name", "type"}) {
+    LslInfo info = nullptr;
+    if (lsl.resolve_byprop(&info, 1, property, name.c_str(), 1, kSearch) < 1) continue;
+    lsl.destroy_streaminfo(info);
+    return true;
+  }
+  return false;
+}
+
 class Inlet {
  public:
   Inlet(const LslLibrary& lsl, const Json& wanted, std::uint32_t index)
@@ -106,6 +118,8 @@ class Inlet {
   }
 
   const tracks::StreamDescription& description() const { return description_; }
+  const std::string& name() const { return name_; }  // name or type by which it was found
+  bool lost() const { return lost_; }                // liblsl does not look for it again
 
   // Publishes the samples that arrived. `difference` is that of ClockDifference.
   void Take(double difference, StreamRing* ring) {
@@ -115,7 +129,12 @@ class Inlet {
     std::int32_t error = kLslNoError;
     const unsigned long count = lsl_.pull_chunk_d(inlet_, values_.data(), times.data(),
                                                   values_.size(), times.size(), 0, &error);
-    // liblsl itself connects again to a stream that was lost, so an error is no reason to end.
+    // liblsl itself connects again to a stream whose sender has a source_id.
+    if (error == kLslLost && !std::exchange(lost_, true))
+      SendLine(kControlDescriptor,
+               {{"say", "The stream " + Quote(name_) +
+                            " was lost. Nothing is measured by it until it is back."}},
+               false);
     if (error != kLslNoError || count > values_.size()) return;
     for (std::size_t i = 0; i < count / channels; ++i) {
       const double time = times[i] + difference;
@@ -180,7 +199,45 @@ class Inlet {
   tracks::StreamDescription description_;
   std::vector<double> values_;
   double offset_ = 0;  // of the sender's clock [s]
+  bool lost_ = false;
 };
+
+// Looks for lost streams, while the other streams are received.
+class SearchForLost {
+ public:
+  explicit SearchForLost(const LslLibrary& lsl) : lsl_(lsl) {}
+
+  // Throws InputError when all lost streams are back, because the receiver must then be restarted.
+  // An earlier restart would end the reception of the other streams until all are there.
+  void Look(const std::vector<Inlet>& inlets) {
+    if (found_.valid()) {
+      if (found_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+      if (found_.get()) throw InputError("All streams that were lost are back.");
+    }
+    std::vector<std::string> names;
+    for (const Inlet& inlet : inlets)
+      if (inlet.lost()) names.push_back(inlet.name());
+    if (names.empty()) return;
+    found_ = std::async(std::launch::async, [this, names] {
+      return std::ranges::all_of(names, [this](const auto& name) { return IsThere(lsl_, name); });
+    });
+  }
+
+ private:
+  const LslLibrary& lsl_;
+  std::future<bool> found_;
+};
+
+// The recording and the evaluator keep the channels of the start of the run.
+void RefuseOtherChannels(const Json& described, const std::vector<Inlet>& inlets) {
+  for (std::size_t i = 0; i < inlets.size(); ++i) {
+    const auto before = tracks::ParseStream(described.at(i).get<std::string>());
+    const tracks::StreamDescription& now = inlets[i].description();
+    if (before.channels != now.channels || before.units != now.units)
+      throw InputError("The stream " + Quote(now.name) +
+                       " has other channels than at the start of the run. Start the run again.");
+  }
+}
 
 // Returns false if the run has ended. The end of the run closes the channel.
 bool WaitAWhile() {
@@ -201,12 +258,16 @@ void Serve(const Json& start) {
     inlets.emplace_back(lsl, wanted, static_cast<std::uint32_t>(inlets.size()));
     texts.push_back(TextOf(inlets.back().description()));
   }
+  if (const auto described = start.find("described"); described != start.end())
+    RefuseOtherChannels(*described, inlets);
+  SearchForLost search(lsl);
   const double difference = ClockDifference(lsl);
   SendLine(kControlDescriptor, {{"ready", "receives"}, {"streams", texts}}, true);
   for (auto asked = std::chrono::steady_clock::now(); WaitAWhile();) {
     for (Inlet& inlet : inlets) inlet.Take(difference, &board->samples);
     if (std::chrono::steady_clock::now() - asked < kOffsetPeriod) continue;
     for (Inlet& inlet : inlets) inlet.UpdateOffset();
+    search.Look(inlets);
     asked = std::chrono::steady_clock::now();
   }
   std::_Exit(0);  // the threads of liblsl need not end in order
@@ -226,7 +287,7 @@ Json StartLine(const StreamOptions& options) {
     const std::string text = ReadYamlText(file, "a mapping of a stream");
     streams.push_back({{"stream", tracks::ParseStreamMap(text, stream).stream}, {"map", text}});
   }
-  // The other process has another working directory in mind only for relative names.
+  // A relative name would depend on the working directory of the other process.
   return {{"streams", streams},
           {"library",
            options.library.empty() ? "" : std::filesystem::absolute(options.library).string()}};
@@ -258,6 +319,12 @@ StreamProcess::StreamProcess(const StreamOptions& options, const Shared<StreamBo
     streams_.push_back(tracks::ParseStream(text));
     const tracks::StreamTrack checked(streams_.back());  // throws if the mapping does not fit
   }
+  Json described = Json::array();
+  for (tracks::StreamDescription stream : streams_) {
+    stream.map.clear();
+    described.push_back(TextOf(stream));
+  }
+  process_->Remember("described", described);
 }
 
 int StreamMain() { return ChildMain("streams", Serve); }
