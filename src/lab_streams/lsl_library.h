@@ -36,7 +36,7 @@ struct LslLibrary {
   double (*time_correction)(LslInlet inlet, double timeout, std::int32_t* error);
   std::int32_t (*set_postprocessing)(LslInlet inlet, std::uint32_t flags);
   unsigned long (*pull_chunk_d)(LslInlet inlet, double* values, double* times,
-                                unsigned long most_values, unsigned long most_times, double timeout,
+                                unsigned long max_values, unsigned long max_times, double timeout,
                                 std::int32_t* error);
   const char* (*get_name)(LslInfo info);
   const char* (*get_type)(LslInfo info);

@@ -2,6 +2,7 @@
 
 import json
 import os
+import signal
 import struct
 import subprocess
 import sys
@@ -17,11 +18,11 @@ PREDICTOR = os.environ["PREDICTOR_BINARY"]
 SCENARIO = os.environ["SCENARIO"]
 LIBRARY = next(Path(pylsl.__file__).parent.glob("lib/liblsl.so*"))
 
-# Sends the left elbow at 100 Hz in mm, and a heart rate once a second.
+# Sends the left elbow at 100 Hz in mm, and a heart rate once a second. An argument replaces the source_id.
 SENDER = """
-import time, pylsl
+import sys, time, pylsl
 def outlet(name, kind, rate, labels, unit):
-    info = pylsl.StreamInfo(name, kind, len(labels), rate, "float32", name)
+    info = pylsl.StreamInfo(name, kind, len(labels), rate, "float32", (sys.argv[1:] or [name])[0])
     channels = info.desc().append_child("channels")
     for label in labels:
         channel = channels.append_child("channel")
@@ -74,8 +75,8 @@ class LiveLsl(unittest.TestCase):
         self.environment = dict(os.environ, LSLAPICFG=str(self.folder / "lsl.cfg"))
         (self.folder / "elbow.yaml").write_text(MAP)
 
-    def send(self):
-        sender = subprocess.Popen([sys.executable, "-c", SENDER], stdout=subprocess.PIPE, text=True,
+    def send(self, *arguments):
+        sender = subprocess.Popen([sys.executable, "-c", SENDER, *arguments], stdout=subprocess.PIPE, text=True,
                                   env=self.environment)
         self.addCleanup(sender.wait)
         self.addCleanup(sender.kill)
@@ -119,6 +120,14 @@ class LiveLsl(unittest.TestCase):
         self.assertLess(parts["left elbow"]["misfit_m"], 0.05, measured)
         self.assertEqual(measured["signals"][0]["name"], "pulse")
 
+    def wait_for_growth(self, process):
+        # The recording contains the models from the start, and then grows by about 1.5 MB per second.
+        recording, sizes = self.folder / "run.mcap", []
+        while process.poll() is None and (len(sizes) < 2 or sizes[-1] < sizes[0] + 4_000_000):
+            if recording.exists():
+                sizes.append(recording.stat().st_size)
+            time.sleep(0.02)
+
     def live_states(self):
         states = [json.loads(data) for topic, data in messages((self.folder / "run.mcap").read_bytes())
                   if topic == "/person/state"]
@@ -127,12 +136,7 @@ class LiveLsl(unittest.TestCase):
     def test_a_stream_that_ends_is_missing(self):
         sender = self.send()
         process = self.start("--person-stream", self.folder / "elbow.yaml", duration=8)
-        # The recording contains the models from the start, and then grows by about 1.5 MB per second.
-        recording, sizes = self.folder / "run.mcap", []
-        while process.poll() is None and (len(sizes) < 2 or sizes[-1] < sizes[0] + 4_000_000):
-            if recording.exists():
-                sizes.append(recording.stat().st_size)
-            time.sleep(0.02)
+        self.wait_for_growth(process)
         sender.kill()
         errors = process.communicate(timeout=120)[1]
         self.assertLessEqual(process.returncode, 1, errors)
@@ -140,6 +144,30 @@ class LiveLsl(unittest.TestCase):
         self.assertIn("measured", [state["inputs"]["left_elbow"]["status"] for state in states])
         self.assertEqual(states[-1]["inputs"]["left_elbow"]["status"], "missing")
         self.assertEqual(states[-1]["inputs"]["heart_rate"]["status"], "none")
+
+    def test_a_stream_without_source_id_is_received_again(self):
+        sender = self.send("")
+        process = self.start("--person-stream", self.folder / "elbow.yaml", duration=60)
+        self.wait_for_growth(process)
+        sender.kill()
+        errors = self.read_until(process, "was lost")
+        self.send("")
+        errors += self.read_until(process, "are back")
+        for _ in range(3):
+            self.wait_for_growth(process)
+        process.send_signal(signal.SIGINT)
+        errors += process.communicate(timeout=120)[1]
+        status = [state["inputs"]["left_elbow"]["status"] for state in self.live_states()]
+        first = status.index("measured")
+        missing = status.index("missing", first)
+        self.assertIn("measured", status[missing:], errors)
+
+    def read_until(self, process, words):
+        lines = []
+        while not lines or words not in lines[-1]:
+            lines.append(process.stderr.readline())
+            self.assertTrue(lines[-1], f"The run ended before it printed {words!r}: {lines}")
+        return "".join(lines)
 
     def test_what_is_wrong_is_named(self):
         code, errors = self.run_with("--person-stream", "Watch", library=self.folder / "none.so")
@@ -151,6 +179,10 @@ class LiveLsl(unittest.TestCase):
         self.assertEqual(code, 2, errors)
         self.assertIn("No such stream", errors)
         self.assertIn("Watch", errors)
+        twice = ["--person-stream", self.folder / "elbow.yaml"] * 2
+        code, errors = self.run_with(*twice)
+        self.assertEqual(code, 2, errors)
+        self.assertIn("also measured by another stream", errors)
         (self.folder / "wrong.yaml").write_text("stream: Trackers\nleft_elbow: {position: [RE]}\n")
         code, errors = self.run_with("--person-stream", self.folder / "wrong.yaml")
         self.assertEqual(code, 2, errors)
