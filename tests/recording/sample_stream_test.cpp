@@ -6,12 +6,14 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "recording/reader.h"
 #include "recording/recorder.h"
 #include "recording/recover.h"
 #include "recording/samples.h"
 #include "recording/share.h"
+#include "recording/writer.h"
 
 namespace predictor {
 namespace {
@@ -121,6 +123,25 @@ TEST(SampleStream, LeavesOutAnotherNumberOfChannels) {
   EXPECT_EQ(streams[0].values, (std::vector<double>{1, 2, 7, 8}));
   EXPECT_EQ(streams[1].values, (std::vector<double>{70}));
   EXPECT_TRUE(streams[0].complete);
+}
+
+// The chunk with the descriptions may be lost.
+TEST(SampleStream, IsReadWithoutItsDescription) {
+  const Folder folder;
+  const std::string file = folder.File("run.mcap");
+  const StreamSample sample = SampleAt(1, 0, {70});
+  JsonChannel samples = SamplesChannel();
+  samples.message = [&sample](const TickRecord&, std::uint64_t) {
+    return recording::SamplesJson(std::span(&sample, 1));
+  };
+  RecordingWriter writer(file, SampleHeader(), {StreamsChannel(), samples});
+  for (std::uint64_t tick = 1; tick <= 100; ++tick) writer.Add(SampleTick(tick));
+  writer.Close();
+  const auto streams = RecordingReader(file).ReadStreams();
+  ASSERT_EQ(streams.size(), 2u);
+  EXPECT_EQ(streams[1].description, "");
+  ASSERT_FALSE(streams[1].values.empty());
+  EXPECT_EQ(streams[1].values.front(), 70);
 }
 
 TEST(SampleStream, IsKeptByRepairAndNotShared) {
