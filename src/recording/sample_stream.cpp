@@ -17,7 +17,7 @@ Json Numbers(const char* meaning) {
   return {{"type", "array"}, {"items", {{"type", "number"}}}, {"description", meaning}};
 }
 
-std::size_t StreamIn(const Json& json) {
+std::size_t IndexOfStream(const Json& json) {
   const auto found = json.find("stream");
   if (found == json.end() || !found->is_number_unsigned()) return kMaxStreams;
   return std::min(found->get<std::size_t>(), kMaxStreams);
@@ -64,10 +64,10 @@ std::string DescriptionSchema() {
 
 bool ParseDescription(std::string_view text, std::size_t* stream, std::string* description) {
   const Json json = Json::parse(text, nullptr, false);
-  if (!json.is_object() || StreamIn(json) == kMaxStreams) return false;
+  if (!json.is_object() || IndexOfStream(json) == kMaxStreams) return false;
   const auto found = json.find("description");
   if (found == json.end() || !found->is_object()) return false;
-  *stream = StreamIn(json);
+  *stream = IndexOfStream(json);
   *description = found->dump();
   return true;
 }
@@ -103,12 +103,12 @@ std::string SamplesSchema() {
 
 std::size_t StreamOf(std::string_view text) {
   const Json json = Json::parse(text, nullptr, false);
-  return json.is_object() ? StreamIn(json) : kMaxStreams;
+  return json.is_object() ? IndexOfStream(json) : kMaxStreams;
 }
 
 bool ParseSamples(std::string_view text, std::size_t index, double time, RecordedStream* stream) {
   const Json json = Json::parse(text, nullptr, false);
-  if (!json.is_object() || StreamIn(json) != index) return false;
+  if (!json.is_object() || IndexOfStream(json) != index) return false;
   const auto times = json.find("times"), values = json.find("values");
   if (times == json.end() || values == json.end() || !times->is_array() || !values->is_array() ||
       times->empty() || times->size() > kMaxSamplesInMessage || values->size() != times->size() ||
