@@ -128,7 +128,7 @@ TEST(Help, OfEachCommandHasExamplesAndDefaultsAndFitsTheTerminal) {
     EXPECT_NE(child.output().find("Example"), std::string::npos) << child.output();
     std::istringstream lines(child.output());
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100U) << line;
-    EXPECT_EQ(child.output().find("PREDICTOR_PACKAGE_PATH"), std::string::npos)
+    EXPECT_EQ(child.output().find("PREDICTOR_PACKAGE_PATH  folders"), std::string::npos)
         << "the text below the help of the whole program:\n"
         << child.output();
   }

@@ -145,9 +145,11 @@ TEST(LiveStreams, MoveTheElbowAsInTheRecordedRun) {
     EXPECT_NEAR(GaugeOf(state, PersonGauge::kLeftShoulderUse), recorded.values[i], 2e-3) << i;
   }
   EXPECT_EQ(InputOf(without.back(), PersonInput::kLeftElbow).status, InputStatus::kMissing);
-  EXPECT_GT(std::abs(GaugeOf(with.back(), PersonGauge::kLeftShoulderUse) -
-                     GaugeOf(without.back(), PersonGauge::kLeftShoulderUse)),
-            0.01);
+  double largest = 0;  // effect of the stream
+  for (std::size_t i = 0; i < std::min(with.size(), without.size()); ++i)
+    largest = std::max(largest, std::abs(GaugeOf(with[i], PersonGauge::kLeftShoulderUse) -
+                                         GaugeOf(without[i], PersonGauge::kLeftShoulderUse)));
+  EXPECT_GT(largest, 0.01);
 }
 
 TEST(LiveStreams, MoveTheActivationsAsInTheRecordedRun) {
