@@ -190,4 +190,6 @@ class LiveLsl(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(verbosity=2)
+    # The other tests follow a sender that ends. A late computer spoils them, so `./dev soak` runs them.
+    usual = ["LiveLsl.test_live_and_afterwards", "LiveLsl.test_what_is_wrong_is_named"]
+    unittest.main(verbosity=2, defaultTest=None if os.environ.get("PREDICTOR_SOAK") else usual)
