@@ -11,19 +11,10 @@
 namespace predictor::assessment {
 namespace {
 
-constexpr std::uint64_t kStart = 7'000'000'000;  // monotonic clock at tick 0 [ns]
-constexpr std::uint64_t kMs = 1'000'000;         // [ns]
-
-TickRecord Still(std::uint64_t tick) {
-  TickRecord record = RecordOf(tick, 1, 20);
-  record.wall_ns = kStart + kMs * tick;
-  return record;
-}
-
 // The head moves, so an evaluation that uses it at a wrong time gets another result.
 HeadRecord HeadAt(std::uint64_t tick) {
   HeadRecord head;
-  head.wall_ns = kStart + kMs * tick;
+  head.wall_ns = kBegin + kMilli * tick;
   head.p = {0.75 - 2e-4 * static_cast<double>(tick), 0, kGround + 1.55};
   head.q = {0, 0, 0, 1};  // looks along -x
   return head;
@@ -41,7 +32,7 @@ std::vector<PersonState> Follow(const std::vector<HeadRecord>& heads, std::uint6
   for (const HeadRecord& head : heads) live.head().Take(head, head.wall_ns);
   std::vector<PersonState> states;
   for (std::uint64_t tick = 1; tick <= last; ++tick)
-    if (live.Add(Still(tick))) states.push_back(live.state());
+    if (live.Add(TickAt(tick))) states.push_back(live.state());
   return states;
 }
 
@@ -50,13 +41,13 @@ Assessment AssessWith(const std::vector<HeadRecord>& heads, double duration) {
   track.source = "the headset";
   track.of_the_run = true;
   track.head.emplace();
-  const std::uint64_t first = Still(1).wall_ns;  // the recording starts at tick 1
+  const std::uint64_t first = TickAt(1).wall_ns;  // the recording starts at tick 1
   for (const HeadRecord& head : heads)
     AppendMeasured(head, 1e-9 * (static_cast<double>(head.wall_ns) - static_cast<double>(first)),
                    &*track.head);
   AssessOptions options;
   options.tracks = {track};
-  return Assess(PersonScenario(), 9, RunOf(Collect(PersonScenario(), duration, Still)), options);
+  return Assess(PersonScenario(), 9, RunOf(Collect(PersonScenario(), duration, TickAt)), options);
 }
 
 const QuantityResult& QuantityOf(const Assessment& a, const std::string& path) {
@@ -94,8 +85,8 @@ TEST(LiveHead, GivesThePostureAndTheIntervalsOfTheRecordedRun) {
 TEST(LiveHead, IsRelatedToTheTicksByTheClock) {
   constexpr std::uint64_t kMissed = 400;
   const auto late = [](std::uint64_t tick) {
-    TickRecord record = Still(tick);
-    if (tick > 1) record.wall_ns += kMs * kMissed;
+    TickRecord record = TickAt(tick);
+    if (tick > 1) record.wall_ns += kMilli * kMissed;
     return record;
   };
   LivePerson live(PersonScenario(), {});
@@ -120,10 +111,10 @@ TEST(LiveHead, IsModelledInAGapAndAfterTheLastHead) {
 TEST(LiveHead, IsNotUsedWhileMostHeadsAreImpossible) {
   auto heads = Heads(0, 600);
   for (HeadRecord& head : heads)
-    if (head.wall_ns < kStart + 300 * kMs) head.p[2] += 3;
+    if (head.wall_ns < kBegin + 300 * kMilli) head.p[2] += 3;
   auto registered = heads;
   for (HeadRecord& head : registered)
-    if (head.wall_ns >= kStart + 300 * kMs) head.registration.yaw = 0.1;
+    if (head.wall_ns >= kBegin + 300 * kMilli) head.registration.yaw = 0.1;
   const auto modelled = Follow({}, 500), states = Follow(heads, 500);
   for (std::size_t i = 0; i < 50; ++i) {
     EXPECT_EQ(states[i].head, HeadSource::kImpossible) << i;
@@ -133,8 +124,8 @@ TEST(LiveHead, IsNotUsedWhileMostHeadsAreImpossible) {
   LivePerson live(PersonScenario(), {});
   for (std::uint64_t tick = 1; tick <= 400; ++tick) {
     for (const HeadRecord& head : registered)
-      if (head.wall_ns == kStart + kMs * (tick + 24)) live.head().Take(head, head.wall_ns);
-    live.Add(Still(tick));
+      if (head.wall_ns == kBegin + kMilli * (tick + 24)) live.head().Take(head, head.wall_ns);
+    live.Add(TickAt(tick));
     if (tick == 250) {
       EXPECT_EQ(live.state().head, HeadSource::kImpossible);
     }
@@ -144,7 +135,7 @@ TEST(LiveHead, IsNotUsedWhileMostHeadsAreImpossible) {
 
 TEST(LiveHead, IsAwaitedOnlyWhileItMayArrive) {
   LiveHead head;
-  const auto at = [](std::uint64_t tick) { return kStart + kMs * tick; };
+  const auto at = [](std::uint64_t tick) { return kBegin + kMilli * tick; };
   EXPECT_FALSE(head.IsAwaited(at(100), at(100)));  // no headset
   head.Take(HeadAt(100), at(100));
   EXPECT_FALSE(head.IsAwaited(at(100), at(200)));  // it is here

@@ -19,15 +19,6 @@
 namespace predictor::assessment {
 namespace {
 
-constexpr std::uint64_t kBegin = 7'000'000'000;  // monotonic clock at tick 0 [ns]
-constexpr std::uint64_t kMilli = 1'000'000;      // [ns]
-
-TickRecord TickAt(std::uint64_t tick) {
-  TickRecord record = RecordOf(tick, 1, 20);
-  record.wall_ns = kBegin + kMilli * tick;
-  return record;
-}
-
 tracks::StreamDescription Electrode() {
   tracks::StreamDescription stream{.name = "EMG", .rate = 1000};
   stream.map =

@@ -39,6 +39,16 @@ inline TickRecord RecordOf(std::uint64_t tick, double height, double force) {
   return record;
 }
 
+inline constexpr std::uint64_t kBegin = 7'000'000'000;  // monotonic clock at tick 0 [ns]
+inline constexpr std::uint64_t kMilli = 1'000'000;      // [ns]
+
+// The same with 20 N and a time of the monotonic clock.
+inline TickRecord TickAt(std::uint64_t tick) {
+  TickRecord record = RecordOf(tick, 1, 20);
+  record.wall_ns = kBegin + kMilli * tick;
+  return record;
+}
+
 inline SampleCollector Collect(const Scenario& scenario, double duration,
                                const std::function<TickRecord(std::uint64_t)>& record) {
   SampleCollector run(scenario);

@@ -50,9 +50,9 @@ void SetSafety(CobotSafetySpec* safety) {
 
 // Returns the name of the controller that a study's column shows. The scenario's own controller may
 // be of a type that the study also contains with other parameters.
-std::string ColumnOf(const StudyChoice& controller, const Scenario& scenario) {
+std::string ColumnOf(const StudyChoice& controller, const std::filesystem::path& file) {
   if (!controller.set.empty()) return controller.name;
-  const std::string& type = scenario.cobot.controller.type;
+  const std::string type = LoadScenario(file).cobot.controller.type;
   const auto others = StudiedControllers();
   const bool twice = std::ranges::any_of(
       others, [&](const StudyChoice& other) { return !other.set.empty() && other.name == type; });
@@ -120,7 +120,7 @@ HazardCell MakeCell(const std::filesystem::path& file, const StudyChoice& contro
                     const StudyChoice& hazard, SharedStudy* study) {
   HazardCell cell;
   cell.scenario = file.stem().string();
-  cell.controller = ColumnOf(controller, LoadScenario(file));
+  cell.controller = ColumnOf(controller, file);
   cell.hazard = hazard.name;
   Scenario scenario;
   std::unique_ptr<HazardRuns> runs;
